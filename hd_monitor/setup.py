@@ -1,0 +1,38 @@
+"""colcon's build of this package; pip builds from pyproject.toml at the root of the repository."""
+
+from glob import glob
+from xml.etree import ElementTree
+
+from setuptools import find_packages, setup
+
+NAME = "hd_monitor"
+manifest = ElementTree.parse("package.xml").getroot()
+
+setup(
+    name=NAME,
+    version=manifest.findtext("version"),
+    description=manifest.findtext("description"),
+    license=manifest.findtext("license"),
+    maintainer=manifest.findtext("maintainer"),
+    maintainer_email=manifest.find("maintainer").get("email"),
+    packages=find_packages(include=[NAME, f"{NAME}.*"]),
+    package_data={"": ["py.typed", "**/*.j2", "**/*.html", "**/*.css"]},
+    data_files=[
+        ("share/ament_index/resource_index/packages", [f"resource/{NAME}"]),
+        (f"share/{NAME}", ["package.xml"]),
+        (f"share/{NAME}/launch", sorted(glob("launch/*.launch.py"))),
+        # config is a link to the root's: setuptools and colcon reach only what lies below this folder.
+        (f"share/{NAME}/config", sorted(glob("config/*.yaml"))),
+    ],
+    install_requires=["numpy>=1.26", "scipy>=1.11"],
+    extras_require={
+        "offline": ["rosbags>=0.10", "matplotlib>=3.6", "jinja2>=3.1", "pyyaml>=6.0"],
+        "test": ["pytest"],
+    },
+    entry_points={
+        "console_scripts": [
+            "hd-monitor = hd_monitor.cli.main:main",
+            "hd_monitor_node = hd_monitor.ros.node:main",
+        ],
+    },
+)

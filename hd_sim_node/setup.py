@@ -1,0 +1,32 @@
+"""colcon's build of this package; pip builds from pyproject.toml at the root of the repository."""
+
+from glob import glob
+from xml.etree import ElementTree
+
+from setuptools import find_packages, setup
+
+NAME = "hd_sim_node"
+manifest = ElementTree.parse("package.xml").getroot()
+
+setup(
+    name=NAME,
+    version=manifest.findtext("version"),
+    description=manifest.findtext("description"),
+    license=manifest.findtext("license"),
+    maintainer=manifest.findtext("maintainer"),
+    maintainer_email=manifest.find("maintainer").get("email"),
+    packages=find_packages(include=[NAME, f"{NAME}.*"]),
+    package_data={"": ["py.typed", "**/*.j2", "**/*.html", "**/*.css"]},
+    data_files=[
+        ("share/ament_index/resource_index/packages", [f"resource/{NAME}"]),
+        (f"share/{NAME}", ["package.xml"]),
+        (f"share/{NAME}/launch", sorted(glob("launch/*.launch.py"))),
+    ],
+    install_requires=["hd_monitor", "numpy>=1.26", "scipy>=1.11"],
+    extras_require={"test": ["pytest"]},
+    entry_points={
+        "console_scripts": [
+            "hd_sim_node = hd_sim_node.node:main",
+        ],
+    },
+)
