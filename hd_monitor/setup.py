@@ -1,6 +1,6 @@
 """colcon's build of this package; pip builds from pyproject.toml at the root of the repository."""
 
-from glob import glob
+from pathlib import Path
 from xml.etree import ElementTree
 
 from setuptools import find_packages, setup
@@ -20,9 +20,9 @@ setup(
     data_files=[
         ("share/ament_index/resource_index/packages", [f"resource/{NAME}"]),
         (f"share/{NAME}", ["package.xml"]),
-        (f"share/{NAME}/launch", sorted(glob("launch/*.launch.py"))),
+        (f"share/{NAME}/launch", sorted(str(path) for path in Path("launch").glob("*.launch.py"))),
         # config is a link to the root's: setuptools and colcon reach only what lies below this folder.
-        (f"share/{NAME}/config", sorted(glob("config/*.yaml"))),
+        (f"share/{NAME}/config", sorted(str(path) for path in Path("config").glob("*.yaml"))),
     ],
     install_requires=["numpy>=1.26", "scipy>=1.11"],
     extras_require={
