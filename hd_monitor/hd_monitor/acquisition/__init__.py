@@ -1,0 +1,1 @@
+"""From stamped arrays to contiguous records of vibration and motion."""

@@ -1,0 +1,1 @@
+"""Spectra, RMS per speed and line pairs."""

@@ -1,0 +1,1 @@
+"""The hd-monitor command."""

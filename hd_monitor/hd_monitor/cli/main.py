@@ -1,0 +1,71 @@
+"""Entry point of ``hd-monitor``: finds the subcommand's module and runs it."""
+
+import argparse
+import importlib
+import sys
+from collections.abc import Sequence
+from typing import Protocol, cast
+
+from ..errors import HdMonitorError
+
+UNUSABLE_INPUT = 2
+"""Exit status for input of which nothing can be said."""
+
+COMMANDS = {
+    "demo": ("hd_monitor.cli.demo", "simulate a defective reducer and watch it over real DDS"),
+    "replay": ("hd_monitor.cli.replay", "put a recorded bag through the same core, with JSON and a report"),
+    "compare": ("hd_monitor.cli.compare", "compare two bags or two JSON results: what changed"),
+    "identify": ("hd_monitor.cli.identify", "estimate the stiffness indexes, fn and ζ from a recorded run"),
+    "paper": ("hd_monitor.cli.paper", "reproduce every figure, table and claim of the source paper"),
+}
+"""Subcommand: (module, help). A module is imported only when its command runs, so that no extra is needed for others."""
+
+
+class Command(Protocol):
+    """What a subcommand's module offers."""
+
+    def configure(self, parser: argparse.ArgumentParser) -> None:
+        """Add the command's arguments."""
+
+    def run(self, arguments: argparse.Namespace) -> int:
+        """Do the work; return the exit status."""
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run ``hd-monitor`` and return its exit status: 0 done, 1 `--fail-on` met, 2 unusable input."""
+    words = list(sys.argv[1:] if argv is None else argv)
+    parser = argparse.ArgumentParser(
+        prog="hd-monitor", description="Watches harmonic-drive reducers and names the part that is going bad."
+    )
+    subparsers = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    chosen = next((word for word in words if word in COMMANDS), None)
+    module: Command | None = None
+    for name, (path, text) in COMMANDS.items():
+        subparser = subparsers.add_parser(name, help=text, description=text)
+        if name == chosen:
+            try:
+                module = cast("Command", importlib.import_module(path))
+            except ModuleNotFoundError as error:
+                print(f"hd-monitor {name}: {_missing(error)}", file=sys.stderr)
+                return UNUSABLE_INPUT
+            module.configure(subparser)
+    arguments = parser.parse_args(words)
+    if module is None:  # argparse has already refused anything else
+        parser.error(f"unknown command {arguments.command!r}")
+    try:
+        return module.run(arguments)
+    except HdMonitorError as error:
+        print(f"hd-monitor {arguments.command}: {error}", file=sys.stderr)
+        return UNUSABLE_INPUT
+    except KeyboardInterrupt:
+        return 130
+
+
+def _missing(error: ModuleNotFoundError) -> str:
+    name = (error.name or "").split(".")[0]
+    extra = "ros" if name in {"rclpy", "diagnostic_msgs", "sensor_msgs", "std_msgs"} else "offline"
+    return f"needs the Python package {name!r}, which is not installed; pip install 'hd-monitor[{extra}]'"
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

@@ -1,0 +1,113 @@
+"""The topics' names and array layouts, as arrays: what a publisher packs and a subscriber unpacks.
+
+Nothing here knows a message class: the ROS shell and the offline reader both hand over labels, sizes and data.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from .errors import LayoutError
+
+TORSIONAL_ACCELERATION = "torsional_acceleration"
+TORSIONAL_ACCELERATION_BLOCK = "torsional_acceleration/block"
+IMU = "imu/data_raw"
+JOINT_STATES = "joint_states"
+DIAGNOSTICS = "/diagnostics"
+ZOOM_SPECTRUM = "zoom_spectrum"
+RMS_CURVE = "rms_curve"
+
+BLOCK_LABEL = "torsional_acceleration"
+BLOCK_OFFSET = 4
+"""Values before the first sample: seconds, nanoseconds, sample period, sequence number."""
+
+MAX_ZOOM_BINS = 50
+"""Viewers drop arrays of more than 100 values; a bin takes two."""
+
+NANOSECONDS = 1_000_000_000
+
+
+class Dimension(NamedTuple):
+    """One entry of a MultiArrayLayout: its label, its size and its stride in values."""
+
+    label: str
+    size: int
+    stride: int
+
+
+class Block(NamedTuple):
+    """A block of torsional acceleration samples."""
+
+    stamp: int
+    """Sampling instant of the first sample [ns]."""
+    period: float
+    """Sample period [s]."""
+    sequence: int
+    """Number of the block; a jump exposes loss."""
+    samples: npt.NDArray[np.float64]
+    """θ'' [rad/s²], shape (N,)."""
+
+
+def pack_block(block: Block) -> tuple[Dimension, npt.NDArray[np.float64]]:
+    """Lay out a block as the topic ``torsional_acceleration/block`` wants it: (dimension, data)."""
+    count = len(block.samples)
+    data = np.empty(BLOCK_OFFSET + count)
+    data[0], data[1] = divmod(block.stamp, NANOSECONDS)
+    data[2] = block.period
+    data[3] = block.sequence
+    data[BLOCK_OFFSET:] = block.samples
+    return Dimension(BLOCK_LABEL, count, count), data
+
+
+def unpack_block(dimensions: Sequence[tuple[str, int, int]], data_offset: int, data: npt.ArrayLike) -> Block:
+    """Read a ``torsional_acceleration/block`` array.
+
+    Parameters
+    ----------
+    dimensions : sequence of (label, size, stride)
+        ``layout.dim`` of the message.
+    data_offset : int
+        ``layout.data_offset`` of the message.
+    data : array_like
+        ``data`` of the message.
+
+    Raises
+    ------
+    LayoutError
+        If the layout is not the contract's, saying what differs.
+    """
+    values = np.asarray(data, dtype=np.float64)
+    if len(dimensions) != 1:
+        raise LayoutError(f"a block has {len(dimensions)} dimensions; the contract asks for exactly 1")
+    label, size, stride = dimensions[0]
+    if label != BLOCK_LABEL:
+        raise LayoutError(f"a block's dimension is labelled {label!r}; the contract asks for {BLOCK_LABEL!r}")
+    if data_offset != BLOCK_OFFSET:
+        raise LayoutError(f"a block's data_offset is {data_offset}; the contract asks for {BLOCK_OFFSET}")
+    if stride != size or values.size != BLOCK_OFFSET + size:
+        raise LayoutError(
+            f"a block announces {size} samples with stride {stride} but carries {values.size} values; "
+            f"the contract asks for stride = size and {BLOCK_OFFSET} values before the samples"
+        )
+    seconds, nanoseconds, period, sequence = values[:BLOCK_OFFSET].tolist()
+    whole = all(np.isfinite(x) and x == np.floor(x) and x >= 0 for x in (seconds, nanoseconds, sequence))
+    if not whole or nanoseconds >= NANOSECONDS or seconds >= 2.0**33:
+        raise LayoutError(
+            f"a block starts at {seconds!r} s {nanoseconds!r} ns with number {sequence!r}; the contract asks for "
+            "whole, non-negative values"
+        )
+    if not (np.isfinite(period) and 0.0 < period < 10.0):
+        raise LayoutError(f"a block's sample period is {period!r} s; the contract asks for the time between samples")
+    return Block(int(seconds) * NANOSECONDS + int(nanoseconds), period, int(sequence), values[BLOCK_OFFSET:])
+
+
+def zoom_layout(bins: int) -> tuple[Dimension, Dimension]:
+    """Dimensions of ``zoom_spectrum``: [bin, (frequency Hz, amplitude)]."""
+    return Dimension("bin", bins, 2 * bins), Dimension("frequency_amplitude", 2, 2)
+
+
+def rms_layout(bins: int) -> tuple[Dimension, Dimension]:
+    """Dimensions of ``rms_curve``: [speed bin, (rpm, rms, samples)]."""
+    return Dimension("speed_bin", bins, 3 * bins), Dimension("rpm_rms_samples", 3, 3)

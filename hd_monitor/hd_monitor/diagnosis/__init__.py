@@ -1,0 +1,1 @@
+"""From indexes to a verdict with reasons."""

@@ -1,0 +1,52 @@
+"""The verdict: which spline is at fault, how sure that is, and why."""
+
+from dataclasses import dataclass
+from enum import IntEnum, StrEnum
+
+
+class Component(StrEnum):
+    """The part named."""
+
+    FLEXSPLINE = "flexspline"
+    CIRCULAR_SPLINE = "circular_spline"
+    BOTH = "both"
+    NONE = "none"
+    UNDETERMINED = "undetermined"
+
+
+class FaultCode(StrEnum):
+    """Machine-readable reason of a status."""
+
+    OK = "HD_OK"
+    FLEXSPLINE = "HD_FLEXSPLINE"
+    CIRCULAR_SPLINE = "HD_CIRCULAR_SPLINE"
+    BOTH_SPLINES = "HD_BOTH_SPLINES"
+    UNDETERMINED = "HD_UNDETERMINED"
+    INPUT_LOST = "HD_INPUT_LOST"
+    INPUT_INVALID = "HD_INPUT_INVALID"
+
+
+class Level(IntEnum):
+    """Levels of diagnostic_msgs/DiagnosticStatus that a monitor may publish."""
+
+    OK = 0
+    WARN = 1
+    ERROR = 2
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Verdict:
+    """What a status says of one reducer at one time.
+
+    Attributes
+    ----------
+    component, level, fault_code
+        The part named, the level and the code.
+    reason : str
+        One sentence for a technician.
+    """
+
+    component: Component
+    level: Level
+    fault_code: FaultCode
+    reason: str

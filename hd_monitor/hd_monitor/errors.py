@@ -1,0 +1,17 @@
+"""Errors that hd_monitor raises on purpose: each message states the value, the consequence and what to do."""
+
+
+class HdMonitorError(ValueError):
+    """Base of every error that hd_monitor raises on purpose."""
+
+
+class GeometryError(HdMonitorError):
+    """The tooth numbers or the mount describe no harmonic drive that could turn."""
+
+
+class ParameterError(HdMonitorError):
+    """A parameter lies outside the range in which it means anything."""
+
+
+class LayoutError(HdMonitorError):
+    """A message's arrays do not have the layout that the topic's contract asks for."""

@@ -1,0 +1,1 @@
+"""From records to the stiffness indexes of the two splines, with their covariance."""

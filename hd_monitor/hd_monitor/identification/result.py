@@ -1,0 +1,82 @@
+"""What identification hands to diagnosis: the defect indexes of both splines with their uncertainty."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from ..reducer import LinePair
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LineEstimate:
+    """The k-th line pair as measured: amplitudes of the vibration signal, and their standard deviations.
+
+    The unit is the signal's: rad/s² for accelerations, N·m or A for efforts, rad/s for velocities.
+    """
+
+    k: int
+    amplitude: LinePair
+    std: LinePair
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Identification:
+    """Stiffness indexes of the two splines, jointly Gaussian as far as the data tells.
+
+    Attributes
+    ----------
+    circular_spline, flexspline : ndarray of complex, shape (harmonics,)
+        Phasors βk·exp(j phase), fractions of the mean stiffness; relative ones if `relative`.
+    index : LinePair
+        Root-sum-square of the β of each spline (bias from noise removed), fractions, never negative.
+    index_std : LinePair
+        Their standard deviations.
+    index_correlation : float
+        Correlation of the two indexes' errors, -1 to 1: near ±1 when the travel hardly separates the lines.
+    relative : bool
+        True if the transmitted torque (or the transfer function) is unknown: then only the ratio of the two indexes
+        means something, not their sizes.
+    lines : tuple of LineEstimate
+        The line amplitudes behind the indexes.
+    travel : float
+        Output travel covered by the samples used [rad].
+    samples : int
+        Samples used.
+    signal_to_noise : float
+        Power of the explained vibration over that of the residual [dB].
+    misfit : float
+        Residual power over the power that the noise floor explains; about 1 if the model is right.
+    natural_frequency, natural_frequency_std, damping_ratio, damping_ratio_std : float
+        fn [Hz] and ζ used, and their standard deviations: 0 where they were given and not refined.
+    load_fluctuation, load_fluctuation_std : float
+        Identified amplitude of the unknown load fluctuation [N·m].
+    instability_speed : float
+        Lowest wave-generator speed [rpm] at which the identified reducer is parametrically unstable; inf if none.
+    doubts : tuple of str
+        What weakens the result, in words for a technician ("natural frequency 48.9 Hz fits far better than …").
+        A doubt that forbids naming a part goes into `blockers` instead.
+    blockers : tuple of str
+        Reasons why no part may be named on this evidence, with what is missing.
+    """
+
+    circular_spline: npt.NDArray[np.complex128]
+    flexspline: npt.NDArray[np.complex128]
+    index: LinePair
+    index_std: LinePair
+    index_correlation: float = 0.0
+    relative: bool = False
+    lines: tuple[LineEstimate, ...] = ()
+    travel: float = 0.0
+    samples: int = 0
+    signal_to_noise: float = float("nan")
+    misfit: float = float("nan")
+    natural_frequency: float = float("nan")
+    natural_frequency_std: float = 0.0
+    damping_ratio: float = float("nan")
+    damping_ratio_std: float = 0.0
+    load_fluctuation: float = 0.0
+    load_fluctuation_std: float = float("nan")
+    instability_speed: float = float("inf")
+    doubts: tuple[str, ...] = field(default=())
+    blockers: tuple[str, ...] = field(default=())

@@ -1,0 +1,24 @@
+"""The parametric torsional model of a harmonic drive, shared by the monitor, the simulator and the paper's figures."""
+
+from .oscillator import Oscillator, Response, gauss_times
+from .parameters import Dynamics, ParametricModel, StiffnessSeries, Torque, table_1
+from .stability import growth_rate, instability_speeds, scale_defects, stability_chart
+from .steady_state import SteadyState, line_pairs, steady_state
+
+__all__ = [
+    "Dynamics",
+    "Oscillator",
+    "ParametricModel",
+    "Response",
+    "SteadyState",
+    "StiffnessSeries",
+    "Torque",
+    "gauss_times",
+    "growth_rate",
+    "instability_speeds",
+    "line_pairs",
+    "scale_defects",
+    "stability_chart",
+    "steady_state",
+    "table_1",
+]

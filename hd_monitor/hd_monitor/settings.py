@@ -1,0 +1,393 @@
+"""Settings of one joint's monitor: one table of parameters, read by the node, by replay and by the tests alike."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Self
+
+from .errors import ParameterError
+from .model.parameters import Dynamics
+from .reducer import Mount, Reducer
+
+Value = bool | int | float | str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Parameter:
+    """One parameter: its dotted name, default, unit, range and description; the type is the default's.
+
+    `low` and `high` bound numbers (inclusive); `choices` lists the words allowed.
+    """
+
+    name: str
+    default: Value
+    description: str
+    unit: str = ""
+    low: float = -math.inf
+    high: float = math.inf
+    choices: tuple[str, ...] = ()
+
+    def check(self, value: object) -> Value:
+        """Return `value` in the parameter's type.
+
+        Raises
+        ------
+        ParameterError
+            If the type, the range or the word is wrong; the message names all three.
+        """
+        kind = type(self.default)
+        if kind is float and isinstance(value, int) and not isinstance(value, bool):
+            value = float(value)
+        if not isinstance(value, kind) or (kind is int and isinstance(value, bool)):
+            raise ParameterError(
+                f"{self.name} = {value!r} has the wrong type; give a {kind.__name__} ({self.description})"
+            )
+        if self.choices and value not in self.choices:
+            raise ParameterError(f"{self.name} = {value!r} is unknown; choose one of: {', '.join(self.choices)}")
+        if isinstance(value, (int, float)) and not isinstance(value, bool) and not self.low <= value <= self.high:
+            if not (math.isnan(value) and isinstance(self.default, float) and math.isnan(self.default)):
+                raise ParameterError(
+                    f"{self.name} = {value!r} is outside [{self.low:g}, {self.high:g}] {self.unit}".rstrip()
+                    + f"; {self.description}"
+                )
+        return value
+
+
+INPUT_SOURCES = ("block", "accel_stamped", "imu", "joint_effort", "joint_velocity")
+SENSORLESS_SOURCES = ("joint_effort", "joint_velocity")
+
+PARAMETERS: tuple[Parameter, ...] = (
+    Parameter(
+        name="reducer.flexspline_teeth", default=160, low=1, high=10_000, description="teeth of the flexspline, z1"
+    ),
+    Parameter(
+        name="reducer.circular_spline_teeth",
+        default=162,
+        low=1,
+        high=10_000,
+        description="teeth of the circular spline, z2 (usually z1 + 2)",
+    ),
+    Parameter(
+        name="reducer.mount",
+        default="circular_spline_fixed",
+        choices=tuple(m.value for m in Mount),
+        description="the spline that stands still",
+    ),
+    Parameter(name="reducer.serial", default="", description="serial number of the reducer, shown as hardware_id"),
+    Parameter(
+        name="dynamics.natural_frequency",
+        default=55.0,
+        unit="Hz",
+        low=0.5,
+        high=2000.0,
+        description="torsional natural frequency of the joint with its load",
+    ),
+    Parameter(
+        name="dynamics.damping_ratio", default=0.023, low=1e-4, high=0.7, description="fraction of critical damping"
+    ),
+    Parameter(
+        name="dynamics.inertia",
+        default=0.29,
+        unit="kg·m²",
+        low=1e-6,
+        high=1e6,
+        description="inertia that the reducer drives, seen at its output",
+    ),
+    Parameter(
+        name="dynamics.refine",
+        default=True,
+        description="refine natural frequency and damping on line where the speed varies enough to tell them",
+    ),
+    Parameter(
+        name="input.source",
+        default="block",
+        choices=INPUT_SOURCES,
+        description="the vibration signal; joint_effort and joint_velocity need no sensor but joint_states",
+    ),
+    Parameter(
+        name="input.axis",
+        default="y",
+        choices=("x", "y", "z", "-x", "-y", "-z"),
+        description="axis of an IMU's linear acceleration that points along the motion (tangential)",
+    ),
+    Parameter(
+        name="input.sensor_radius",
+        default=0.55,
+        unit="m",
+        low=0.0,
+        high=100.0,
+        description="distance of the accelerometer from the joint's axis, also used to show the RMS in m/s²; "
+        "with accel_stamped and 0 < radius the angular value is still what is analysed",
+    ),
+    Parameter(
+        name="input.joint_name",
+        default="",
+        description="the joint's name in joint_states; empty: the name in `joints`, or the only joint there is",
+    ),
+    Parameter(
+        name="input.timeout",
+        default=2.0,
+        unit="s",
+        low=0.05,
+        high=3600.0,
+        description="silence after which an input counts as lost",
+    ),
+    Parameter(
+        name="input.queue_seconds",
+        default=4.0,
+        unit="s",
+        low=0.1,
+        high=60.0,
+        description="depth of the subscription queues, in seconds of the expected rate",
+    ),
+    Parameter(
+        name="input.expected_rate",
+        default=1000.0,
+        unit="Hz",
+        low=1.0,
+        high=100_000.0,
+        description="expected rate of the vibration messages, for the depth of their queue",
+    ),
+    Parameter(
+        name="input.clipping_limit",
+        default=0.0,
+        unit="rad/s²",
+        low=0.0,
+        high=1e9,
+        description="full scale of the sensor, above which samples count as clipped; 0: recognise flat tops",
+    ),
+    Parameter(
+        name="load.source",
+        default="auto",
+        choices=("auto", "effort", "parameter", "unknown"),
+        description="where the transmitted torque comes from; auto: effort if joint_states has it, else load.torque",
+    ),
+    Parameter(
+        name="load.torque",
+        default=10.0,
+        unit="N·m",
+        low=-1e6,
+        high=1e6,
+        description="mean torque on the output where no effort is measured; 0: unknown, indexes are then relative",
+    ),
+    Parameter(
+        name="analysis.harmonics", default=3, low=1, high=8, description="line pairs identified, k = 1 … harmonics"
+    ),
+    Parameter(
+        name="analysis.period",
+        default=1.0,
+        unit="s",
+        low=0.1,
+        high=60.0,
+        description="time between two verdicts, by message stamps",
+    ),
+    Parameter(
+        name="analysis.memory",
+        default=120.0,
+        unit="s",
+        low=1.0,
+        high=86_400.0,
+        description="time of motion over which the evidence fades",
+    ),
+    Parameter(
+        name="analysis.max_gap",
+        default=0.05,
+        unit="s",
+        low=0.0,
+        high=10.0,
+        description="longest hole in the vibration signal that is bridged by leaving samples out; a longer one cuts",
+    ),
+    Parameter(
+        name="analysis.minimum_speed",
+        default=30.0,
+        unit="rpm",
+        low=0.0,
+        high=100_000.0,
+        description="wave-generator speed below which the joint counts as standing",
+    ),
+    Parameter(
+        name="analysis.rms_bin_width",
+        default=100.0,
+        unit="rpm",
+        low=1.0,
+        high=10_000.0,
+        description="width of the speed bins of the RMS curve",
+    ),
+    Parameter(
+        name="diagnosis.warn_index",
+        default=0.05,
+        low=0.0,
+        high=1.0,
+        description="stiffness index (fraction) above which a spline is suspect",
+    ),
+    Parameter(
+        name="diagnosis.error_index",
+        default=0.08,
+        low=0.0,
+        high=2.0,
+        description="stiffness index (fraction) above which a spline is defective",
+    ),
+    Parameter(
+        name="diagnosis.both_ratio",
+        default=0.87,
+        low=0.0,
+        high=1.0,
+        description="both splines are named where the smaller index is above the limit and at least this part of the larger",
+    ),
+    Parameter(
+        name="diagnosis.confidence",
+        default=0.99,
+        low=0.5,
+        high=0.999999,
+        description="probability that a named part must have on the evidence; below it the verdict is undetermined",
+    ),
+    Parameter(
+        name="diagnosis.hysteresis",
+        default=0.1,
+        low=0.0,
+        high=0.9,
+        description="part of a limit by which an index must fall below it before the status improves",
+    ),
+    Parameter(
+        name="diagnosis.confirm_count",
+        default=2,
+        low=1,
+        high=100,
+        description="verdicts (N) that must agree before the status changes",
+    ),
+    Parameter(
+        name="diagnosis.confirm_window",
+        default=3,
+        low=1,
+        high=100,
+        description="number of last verdicts (M) looked at for that",
+    ),
+    Parameter(name="diagnosis.latch", default=False, description="keep the worst status until the latch is reset"),
+)
+
+_BY_NAME = {parameter.name: parameter for parameter in PARAMETERS}
+
+
+@dataclass(frozen=True, slots=True)
+class JointSettings:
+    """All settings of one joint, checked against the table and against each other.
+
+    Examples
+    --------
+    >>> settings = JointSettings.from_mapping({"reducer.flexspline_teeth": 200, "reducer.circular_spline_teeth": 202})
+    >>> settings.reducer.reduction, settings["diagnosis.both_ratio"]
+    (100.0, 0.87)
+    """
+
+    values: tuple[tuple[str, Value], ...]
+
+    @classmethod
+    def from_mapping(cls, given: Mapping[str, Any] | None = None) -> Self:
+        """Check dotted or nested parameters and fill in the defaults.
+
+        Raises
+        ------
+        ParameterError
+            If a name is unknown or a value is wrong, alone or beside the others.
+        GeometryError
+            If the teeth or the mount are impossible.
+        """
+        values: dict[str, Value] = {parameter.name: parameter.default for parameter in PARAMETERS}
+        for name, value in flatten(given or {}).items():
+            if name not in _BY_NAME:
+                raise ParameterError(f"{name} is no parameter of a joint; see msgs_doc/parameters.md for their list")
+            values[name] = _BY_NAME[name].check(value)
+        if values["diagnosis.error_index"] < values["diagnosis.warn_index"]:  # type: ignore[operator]
+            raise ParameterError(
+                f"diagnosis.error_index = {values['diagnosis.error_index']} is below diagnosis.warn_index = "
+                f"{values['diagnosis.warn_index']}; an error must be worse than a warning"
+            )
+        if values["diagnosis.confirm_count"] > values["diagnosis.confirm_window"]:  # type: ignore[operator]
+            raise ParameterError(
+                f"diagnosis.confirm_count = {values['diagnosis.confirm_count']} can never be reached within "
+                f"diagnosis.confirm_window = {values['diagnosis.confirm_window']} verdicts"
+            )
+        settings = cls(tuple(values.items()))
+        settings.reducer  # noqa: B018  impossible geometry is refused here, not at the first sample
+        return settings
+
+    def __getitem__(self, name: str) -> Any:
+        """Return the value of the parameter with this dotted name."""
+        for key, value in self.values:
+            if key == name:
+                return value
+        raise KeyError(name)
+
+    @property
+    def reducer(self) -> Reducer:
+        """The reducer's geometry."""
+        return Reducer(
+            flexspline_teeth=self["reducer.flexspline_teeth"],
+            circular_spline_teeth=self["reducer.circular_spline_teeth"],
+            mount=self["reducer.mount"],
+        )
+
+    @property
+    def dynamics(self) -> Dynamics:
+        """The mean oscillator."""
+        return Dynamics(
+            natural_frequency=self["dynamics.natural_frequency"],
+            damping_ratio=self["dynamics.damping_ratio"],
+            inertia=self["dynamics.inertia"],
+        )
+
+    @property
+    def sensorless(self) -> bool:
+        """Whether the vibration signal comes from joint_states alone."""
+        return self["input.source"] in SENSORLESS_SOURCES
+
+
+def flatten(nested: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
+    """Turn nested mappings into one with dotted names."""
+    flat: dict[str, Any] = {}
+    for key, value in nested.items():
+        name = f"{prefix}{key}"
+        if isinstance(value, Mapping):
+            flat.update(flatten(value, f"{name}."))
+        else:
+            flat[name] = value
+    return flat
+
+
+def split_joints(given: Mapping[str, Any]) -> dict[str, JointSettings]:
+    """Settings of every joint in a node's parameters.
+
+    Parameters
+    ----------
+    given : mapping
+        Parameters, nested or dotted: `joints` (list of names; one unnamed joint called ``joint`` by default), the
+        joints' common values at the top level and each joint's own below its name.
+
+    Returns
+    -------
+    dict of str to JointSettings
+        In the order of `joints`.
+
+    Raises
+    ------
+    ParameterError
+        If a joint is named twice or a name belongs to no parameter and no joint.
+    """
+    flat = flatten(given)
+    joints = flat.pop("joints", None) or ["joint"]
+    if isinstance(joints, str) or len(set(joints)) != len(joints):
+        raise ParameterError(f"joints = {joints!r} must be a list of different names")
+    common = {name: value for name, value in flat.items() if name in _BY_NAME}
+    rest = {name: value for name, value in flat.items() if name not in _BY_NAME}
+    settings = {}
+    for joint in joints:
+        prefix = f"{joint}."
+        own = {name[len(prefix) :]: value for name, value in rest.items() if name.startswith(prefix)}
+        rest = {name: value for name, value in rest.items() if not name.startswith(prefix)}
+        settings[joint] = JointSettings.from_mapping(common | own)
+    if rest:
+        raise ParameterError(
+            f"{', '.join(sorted(rest))}: neither parameters nor below one of the joints {', '.join(joints)}; "
+            "check the spelling"
+        )
+    return settings
