@@ -18,7 +18,9 @@ import importlib, json, sys
 before = set(sys.modules)
 for module in sys.argv[1:]:
     importlib.import_module(module)
-top = {name.partition(".")[0] for name in set(sys.modules) - before}
+# A module without a spec was not imported: compiled code makes such ones for its own needs.
+loaded = [name for name, module in sys.modules.items() if getattr(module, "__spec__", None) and name not in before]
+top = {name.partition(".")[0] for name in loaded}
 print(json.dumps(sorted(top - set(sys.stdlib_module_names))))
 """
 
