@@ -1,57 +1,13 @@
 """Settings of one joint's monitor: one table of parameters, read by the node, by replay and by the tests alike."""
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Self
 
 from .errors import ParameterError
 from .model.parameters import Dynamics
+from .parameter import Parameter, Value, check_all, flatten
 from .reducer import Mount, Reducer
-
-Value = bool | int | float | str
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Parameter:
-    """One parameter: its dotted name, default, unit, range and description; the type is the default's.
-
-    `low` and `high` bound numbers (inclusive); `choices` lists the words allowed.
-    """
-
-    name: str
-    default: Value
-    description: str
-    unit: str = ""
-    low: float = -math.inf
-    high: float = math.inf
-    choices: tuple[str, ...] = ()
-
-    def check(self, value: object) -> Value:
-        """Return `value` in the parameter's type.
-
-        Raises
-        ------
-        ParameterError
-            If the type, the range or the word is wrong; the message names all three.
-        """
-        kind = type(self.default)
-        if kind is float and isinstance(value, int) and not isinstance(value, bool):
-            value = float(value)
-        if not isinstance(value, kind) or (kind is int and isinstance(value, bool)):
-            raise ParameterError(
-                f"{self.name} = {value!r} has the wrong type; give a {kind.__name__} ({self.description})"
-            )
-        if self.choices and value not in self.choices:
-            raise ParameterError(f"{self.name} = {value!r} is unknown; choose one of: {', '.join(self.choices)}")
-        if isinstance(value, (int, float)) and not isinstance(value, bool) and not self.low <= value <= self.high:
-            if not (math.isnan(value) and isinstance(self.default, float) and math.isnan(self.default)):
-                raise ParameterError(
-                    f"{self.name} = {value!r} is outside [{self.low:g}, {self.high:g}] {self.unit}".rstrip()
-                    + f"; {self.description}"
-                )
-        return value
-
 
 INPUT_SOURCES = ("block", "accel_stamped", "imu", "joint_effort", "joint_velocity")
 SENSORLESS_SOURCES = ("joint_effort", "joint_velocity")
@@ -232,7 +188,8 @@ PARAMETERS: tuple[Parameter, ...] = (
         default=0.87,
         low=0.0,
         high=1.0,
-        description="both splines are named where the smaller index is above the limit and at least this part of the larger",
+        description="both splines are named where the smaller index is above the limit and at least this part of the "
+        "larger",
     ),
     Parameter(
         name="diagnosis.confidence",
@@ -292,11 +249,7 @@ class JointSettings:
         GeometryError
             If the teeth or the mount are impossible.
         """
-        values: dict[str, Value] = {parameter.name: parameter.default for parameter in PARAMETERS}
-        for name, value in flatten(given or {}).items():
-            if name not in _BY_NAME:
-                raise ParameterError(f"{name} is no parameter of a joint; see msgs_doc/parameters.md for their list")
-            values[name] = _BY_NAME[name].check(value)
+        values = check_all(PARAMETERS, given or {}, owner="a joint")
         if values["diagnosis.error_index"] < values["diagnosis.warn_index"]:  # type: ignore[operator]
             raise ParameterError(
                 f"diagnosis.error_index = {values['diagnosis.error_index']} is below diagnosis.warn_index = "
@@ -340,18 +293,6 @@ class JointSettings:
     def sensorless(self) -> bool:
         """Whether the vibration signal comes from joint_states alone."""
         return self["input.source"] in SENSORLESS_SOURCES
-
-
-def flatten(nested: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
-    """Turn nested mappings into one with dotted names."""
-    flat: dict[str, Any] = {}
-    for key, value in nested.items():
-        name = f"{prefix}{key}"
-        if isinstance(value, Mapping):
-            flat.update(flatten(value, f"{name}."))
-        else:
-            flat[name] = value
-    return flat
 
 
 def split_joints(given: Mapping[str, Any]) -> dict[str, JointSettings]:

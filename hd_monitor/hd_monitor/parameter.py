@@ -1,0 +1,104 @@
+"""One parameter of a node or a command: its type, range and description, checked in one way everywhere."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from .errors import ParameterError
+
+Value = bool | int | float | str | tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Parameter:
+    """One parameter: its dotted name, default, unit, range and description; the type is the default's.
+
+    `low` and `high` bound numbers, each number of a list too (inclusive), and numbers are finite; `choices` lists the words
+    allowed.
+    """
+
+    name: str
+    default: Value
+    description: str
+    unit: str = ""
+    low: float = -math.inf
+    high: float = math.inf
+    choices: tuple[str, ...] = ()
+
+    def check(self, value: object) -> Value:
+        """Return `value` in the parameter's type.
+
+        Raises
+        ------
+        ParameterError
+            If the type, the range or the word is wrong; the message names all three.
+        """
+        if isinstance(self.default, tuple):
+            return self._check_list(value)
+        kind = type(self.default)
+        if kind is float and isinstance(value, int) and not isinstance(value, bool):
+            value = float(value)
+        if not isinstance(value, kind) or (kind is int and isinstance(value, bool)):
+            raise ParameterError(
+                f"{self.name} = {value!r} has the wrong type; give a {kind.__name__} ({self.description})"
+            )
+        if self.choices and value not in self.choices:
+            raise ParameterError(f"{self.name} = {value!r} is unknown; choose one of: {', '.join(self.choices)}")
+        if isinstance(value, (int, float)) and not isinstance(value, bool):
+            self._check_number(value)
+        return value
+
+    def _check_list(self, value: object) -> tuple[float, ...]:
+        items = list(value) if isinstance(value, Sequence) and not isinstance(value, (str, bytes)) else [value]
+        if not all(isinstance(item, (int, float)) and not isinstance(item, bool) for item in items):
+            raise ParameterError(
+                f"{self.name} = {value!r} has the wrong type; give a list of numbers ({self.description})"
+            )
+        for item in items:
+            self._check_number(item)
+        return tuple(float(item) for item in items)
+
+    def _check_number(self, value: float) -> None:
+        if not (math.isfinite(value) and self.low <= value <= self.high):
+            raise ParameterError(
+                f"{self.name} = {value!r} is outside [{self.low:g}, {self.high:g}] {self.unit}".rstrip()
+                + f"; {self.description}"
+            )
+
+
+def check_all(parameters: Sequence[Parameter], given: Mapping[str, Any], *, owner: str) -> dict[str, Value]:
+    """Check dotted or nested values against a table and fill in the defaults.
+
+    Parameters
+    ----------
+    parameters : sequence of Parameter
+    given : mapping
+        Nested or dotted.
+    owner : str
+        Whose parameters these are, for the message.
+
+    Raises
+    ------
+    ParameterError
+        If a name is not in the table or a value is wrong.
+    """
+    table = {parameter.name: parameter for parameter in parameters}
+    values: dict[str, Value] = {parameter.name: parameter.default for parameter in parameters}
+    for name, value in flatten(given).items():
+        if name not in table:
+            raise ParameterError(f"{name} is no parameter of {owner}; see msgs_doc/parameters.md for their list")
+        values[name] = table[name].check(value)
+    return values
+
+
+def flatten(nested: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
+    """Turn nested mappings into one with dotted names."""
+    flat: dict[str, Any] = {}
+    for key, value in nested.items():
+        name = f"{prefix}{key}"
+        if isinstance(value, Mapping):
+            flat.update(flatten(value, f"{name}."))
+        else:
+            flat[name] = value
+    return flat
