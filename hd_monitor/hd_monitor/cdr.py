@@ -1,0 +1,313 @@
+"""Bulk decoding of serialised (CDR) messages into arrays, without an object per message.
+
+Messages of one topic nearly always have the same layout: the same frame name, the same joints, the same block length.
+So one message is parsed as a template, and all others of its length whose layout bytes agree with it are read by
+numpy at once; whatever differs becomes the next template. A message that cannot be read costs a complaint, not the
+batch.
+"""
+
+import struct
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from .contract import NANOSECONDS, Dimension
+from .errors import LayoutError
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+ENCAPSULATION = 4
+"""Bytes before the payload: representation (2), options (2). Alignment counts from behind them."""
+
+_BIG_ENDIAN, _LITTLE_ENDIAN = 0, 1
+_LONGEST_SEQUENCE = 1 << 28
+
+
+class Samples(NamedTuple):
+    """Stamped vectors, one row a message."""
+
+    stamps: IntArray
+    """Header stamps [ns], shape (N,)."""
+    linear: FloatArray
+    """Linear acceleration [m/s²], shape (N, 3)."""
+    angular: FloatArray
+    """Angular acceleration [rad/s²] of an AccelStamped, angular velocity [rad/s] of an Imu; shape (N, 3)."""
+    faults: tuple[str, ...]
+    """One complaint for each message that could not be read."""
+
+
+class JointStates(NamedTuple):
+    """Consecutive JointState messages with the same joints; NaN stands where a message carries no such array."""
+
+    place: IntArray
+    """Positions of the messages in the batch, rising, shape (N,)."""
+    names: tuple[str, ...]
+    stamps: IntArray
+    """Header stamps [ns], shape (N,)."""
+    position: FloatArray
+    """Position [rad], shape (N, joints)."""
+    velocity: FloatArray
+    """Velocity [rad/s], shape (N, joints)."""
+    effort: FloatArray
+    """Effort [N·m], shape (N, joints)."""
+
+
+class MultiArrays(NamedTuple):
+    """Float64MultiArray messages with the same layout."""
+
+    place: IntArray
+    """Positions of the messages in the batch, rising, shape (N,)."""
+    dimensions: tuple[Dimension, ...]
+    data_offset: int
+    data: FloatArray
+    """Shape (N, values)."""
+
+
+class Fault(NamedTuple):
+    """A message that could not be read: its position in the batch and why."""
+
+    place: int
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class _Layout[T]:
+    """Where the values of a message stand (`record`), and which of its bytes decide that (`decisive`)."""
+
+    record: np.dtype[np.void]
+    decisive: npt.NDArray[np.bool_]
+    content: T
+
+
+class _Template:
+    """Walks once through a message and notes where its values stand."""
+
+    def __init__(self, message: bytes) -> None:
+        if len(message) < ENCAPSULATION:
+            raise LayoutError(f"a message of {len(message)} bytes is too short for a CDR header; it was cut off")
+        if message[0] != 0 or message[1] not in (_BIG_ENDIAN, _LITTLE_ENDIAN):
+            raise LayoutError(f"a message is encapsulated as {message[:2].hex()}; only plain CDR (0000, 0001) is read")
+        self._message = message
+        self._order = "<" if message[1] == _LITTLE_ENDIAN else ">"
+        self._at = ENCAPSULATION
+        self._decisive = np.zeros(len(message), dtype=np.bool_)
+        self._decisive[:2] = True
+        self._fields: list[tuple[str, tuple[str, tuple[int, ...]], int]] = []
+
+    def _take(self, size: int, alignment: int) -> int:
+        start = ENCAPSULATION + -(-(self._at - ENCAPSULATION) // alignment) * alignment
+        if start + size > len(self._message):
+            raise LayoutError(
+                f"a message ends after {len(self._message)} bytes, but its contents need {start + size}; it was cut "
+                "off or is of another type"
+            )
+        self._at = start + size
+        return start
+
+    def count(self) -> int:
+        """Read a number that decides the layout."""
+        start = self._take(4, 4)
+        self._decisive[start : start + 4] = True
+        return int(struct.unpack_from(f"{self._order}I", self._message, start)[0])
+
+    def text(self, *, decisive: bool = False) -> str:
+        """Read a string; its length always decides the layout, its letters if asked."""
+        length = self.count()
+        start = self._take(length, 1)
+        if decisive:
+            self._decisive[start : start + length] = True
+        return self._message[start : start + length].rstrip(b"\0").decode(errors="replace")
+
+    def field(self, name: str, kind: str, values: int | None = None) -> None:
+        """Note a field: `kind` as numpy writes it ('i4', 'u4', 'f8'), one value or an array of `values`."""
+        size = int(kind[1:])
+        if values is not None and values > _LONGEST_SEQUENCE:
+            raise LayoutError(f"a message announces {values} values; it is damaged or of another type")
+        start = self._take(size * (1 if values is None else values), size if values != 0 else 1)
+        self._fields.append((name, (f"{self._order}{kind}", () if values is None else (values,)), start))
+
+    def stamp(self) -> None:
+        """Note a header: its stamp as fields, the length of its frame's name as layout."""
+        self.field("seconds", "i4")
+        self.field("nanoseconds", "u4")
+        self.text()
+
+    def layout[T](self, content: T) -> _Layout[T]:
+        """Return what was noted, with what the message says by its layout alone."""
+        record = np.dtype(
+            {
+                "names": [name for name, _, _ in self._fields],
+                "formats": [kind for _, kind, _ in self._fields],
+                "offsets": [start for _, _, start in self._fields],
+                "itemsize": len(self._message),
+            }
+        )
+        return _Layout(record, self._decisive, content)
+
+
+def _groups[T](
+    messages: Sequence[bytes], parse: Callable[[bytes], _Layout[T]], faults: list[Fault]
+) -> Iterator[tuple[IntArray, npt.NDArray[np.void], T]]:
+    """Yield (positions, structured array, content) for each set of messages that share a layout."""
+    lengths = np.fromiter(map(len, messages), dtype=np.int64, count=len(messages))
+    for length in np.unique(lengths).tolist():
+        left = np.flatnonzero(lengths == length)
+        while left.size:
+            first = int(left[0])
+            try:
+                layout = parse(messages[first])
+            except LayoutError as error:
+                faults.append(Fault(first, str(error)))
+                left = left[1:]
+                continue
+            chosen = messages if left.size == len(messages) else [messages[i] for i in left.tolist()]
+            joined = b"".join(chosen)
+            raw = np.frombuffer(joined, dtype=np.uint8).reshape(left.size, length)
+            key = raw[:, layout.decisive]
+            same = np.asarray((key == key[0]).all(axis=1))
+            rows = np.frombuffer(joined, dtype=layout.record)
+            if same.all():
+                yield left, rows, layout.content
+                break
+            yield left[same], rows[same], layout.content
+            left = left[~same]
+
+
+def _stamps(rows: npt.NDArray[np.void]) -> IntArray:
+    return rows["seconds"].astype(np.int64) * NANOSECONDS + rows["nanoseconds"].astype(np.int64)
+
+
+def _doubles(values: npt.NDArray[np.void]) -> FloatArray:
+    return values.astype(np.float64)
+
+
+def _parse_accel(message: bytes) -> _Layout[None]:
+    template = _Template(message)
+    template.stamp()
+    template.field("linear", "f8", 3)
+    template.field("angular", "f8", 3)
+    return template.layout(None)
+
+
+def _parse_imu(message: bytes) -> _Layout[None]:
+    template = _Template(message)
+    template.stamp()
+    for name, values in (
+        ("orientation", 4),
+        ("orientation_covariance", 9),
+        ("angular", 3),
+        ("angular_covariance", 9),
+        ("linear", 3),
+        ("linear_covariance", 9),
+    ):
+        template.field(name, "f8", values)
+    return template.layout(None)
+
+
+def _parse_joint_state(message: bytes) -> _Layout[tuple[str, ...]]:
+    template = _Template(message)
+    template.stamp()
+    count = template.count()
+    if count > len(message):
+        raise LayoutError(f"a joint state announces {count} joints; it is damaged or of another type")
+    names = tuple(template.text(decisive=True) for _ in range(count))
+    for name in ("position", "velocity", "effort"):
+        values = template.count()
+        if values not in (0, count):
+            raise LayoutError(
+                f"a joint state has {count} names but {values} values of {name}; it must have one a joint, or none"
+            )
+        template.field(name, "f8", values)
+    return template.layout(names)
+
+
+def _parse_multi_array(message: bytes) -> _Layout[tuple[tuple[Dimension, ...], int]]:
+    template = _Template(message)
+    count = template.count()
+    if count > len(message):
+        raise LayoutError(f"an array announces {count} dimensions; it is damaged or of another type")
+    dimensions = tuple(
+        Dimension(template.text(decisive=True), template.count(), template.count()) for _ in range(count)
+    )
+    offset = template.count()
+    template.field("data", "f8", template.count())
+    return template.layout((dimensions, offset))
+
+
+def _samples(messages: Sequence[bytes], parse: Callable[[bytes], _Layout[None]]) -> Samples:
+    faults: list[Fault] = []
+    groups = list(_groups(messages, parse, faults))
+    if len(groups) == 1 and not faults:
+        rows = groups[0][1]
+        return Samples(_stamps(rows), _doubles(rows["linear"]), _doubles(rows["angular"]), ())
+    total = len(messages)
+    stamps = np.zeros(total, dtype=np.int64)
+    linear, angular = np.empty((total, 3)), np.empty((total, 3))
+    good = np.zeros(total, dtype=np.bool_)
+    for place, rows, _ in groups:
+        good[place] = True
+        stamps[place] = _stamps(rows)
+        linear[place], angular[place] = rows["linear"], rows["angular"]
+    reasons = tuple(fault.reason for fault in sorted(faults))
+    return Samples(stamps[good], linear[good], angular[good], reasons)
+
+
+def decode_accel_stamped(messages: Sequence[bytes]) -> Samples:
+    """Decode serialised ``geometry_msgs/AccelStamped`` messages, in their order.
+
+    Parameters
+    ----------
+    messages : sequence of bytes
+        Messages with their 4-byte CDR header, of either byte order.
+
+    Returns
+    -------
+    Samples
+        Unreadable messages are left out of the arrays and listed in `faults`.
+    """
+    return _samples(messages, _parse_accel)
+
+
+def decode_imu(messages: Sequence[bytes]) -> Samples:
+    """Decode serialised ``sensor_msgs/Imu`` messages, in their order; see :func:`decode_accel_stamped`."""
+    return _samples(messages, _parse_imu)
+
+
+def decode_joint_states(messages: Sequence[bytes]) -> tuple[list[JointStates], list[Fault]]:
+    """Decode serialised ``sensor_msgs/JointState`` messages.
+
+    Parameters
+    ----------
+    messages : sequence of bytes
+        Messages with their 4-byte CDR header, of either byte order.
+
+    Returns
+    -------
+    groups : list of JointStates
+        One for each set of joint names (and arrays present); their `place` tells the messages' order.
+    faults : list of Fault
+        The messages that could not be read.
+    """
+    faults: list[Fault] = []
+    groups = []
+    for place, rows, names in _groups(messages, _parse_joint_state, faults):
+        arrays = []
+        for name in ("position", "velocity", "effort"):
+            values = _doubles(rows[name])
+            arrays.append(values if values.shape[1] == len(names) else np.full((len(rows), len(names)), np.nan))
+        groups.append(JointStates(place, names, _stamps(rows), *arrays))
+    return groups, sorted(faults)
+
+
+def decode_multi_arrays(messages: Sequence[bytes]) -> tuple[list[MultiArrays], list[Fault]]:
+    """Decode serialised ``std_msgs/Float64MultiArray`` messages; see :func:`decode_joint_states`."""
+    faults: list[Fault] = []
+    groups = [
+        MultiArrays(place, dimensions, offset, _doubles(rows["data"]))
+        for place, rows, (dimensions, offset) in _groups(messages, _parse_multi_array, faults)
+    ]
+    return groups, sorted(faults)

@@ -1,0 +1,150 @@
+"""Each joint gets its own part of what the topics carry, and complaints instead of crashes."""
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from hd_monitor.adapters import Inputs
+from hd_monitor.contract import Block
+from hd_monitor.errors import ParameterError
+from hd_monitor.settings import JointSettings
+
+typesys = pytest.importorskip("rosbags.typesys")
+STORE = typesys.get_typestore(typesys.Stores.ROS2_JAZZY)
+T = STORE.types
+
+
+def header(stamp: int) -> Any:
+    return T["std_msgs/msg/Header"](T["builtin_interfaces/msg/Time"](*divmod(stamp, 10**9)), "rig")
+
+
+def joint_state(stamp: int, **positions: float) -> bytes:
+    count = len(positions)
+    arrays = (np.array(list(positions.values())), np.full(count, 2.0), np.full(count, 3.0))
+    message = T["sensor_msgs/msg/JointState"](header(stamp), list(positions), *arrays)
+    return bytes(STORE.serialize_cdr(message, message.__msgtype__))
+
+
+def block(stamp: int, samples: list[float], *, label: str = "torsional_acceleration", sequence: float = 0.0) -> bytes:
+    size = len(samples)
+    dimension = T["std_msgs/msg/MultiArrayDimension"](label, size, size)
+    data = np.array([*divmod(stamp, 10**9), 0.001, sequence, *samples])
+    message = T["std_msgs/msg/Float64MultiArray"](T["std_msgs/msg/MultiArrayLayout"]([dimension], 4), data)
+    return bytes(STORE.serialize_cdr(message, message.__msgtype__))
+
+
+def imu(stamp: int, linear: tuple[float, float, float]) -> bytes:
+    vector = T["geometry_msgs/msg/Vector3"]
+    nine = np.zeros(9)
+    message = T["sensor_msgs/msg/Imu"](
+        header(stamp),
+        T["geometry_msgs/msg/Quaternion"](0.0, 0.0, 0.0, 1.0),
+        nine,
+        vector(0.0, 0.0, 0.0),
+        nine,
+        vector(*linear),
+        nine,
+    )
+    return bytes(STORE.serialize_cdr(message, message.__msgtype__))
+
+
+class Recorder:
+    """A sink that keeps everything."""
+
+    def __init__(self) -> None:
+        self.vibration: list[tuple[int, float]] = []
+        self.blocks: list[Block] = []
+        self.motion: list[tuple[int, float, float, float]] = []
+        self.rejected: list[str] = []
+
+    def add_vibration(self, stamps: npt.NDArray[np.int64], values: npt.NDArray[np.float64]) -> None:
+        self.vibration += zip(stamps.tolist(), values.tolist(), strict=True)
+
+    def add_block(self, block: Block) -> None:
+        self.blocks.append(block)
+
+    def add_motion(self, stamps: Any, position: Any, velocity: Any, effort: Any) -> None:
+        self.motion += zip(stamps.tolist(), position.tolist(), velocity.tolist(), effort.tolist(), strict=True)
+
+    def reject(self, reason: str) -> None:
+        self.rejected.append(reason)
+
+
+def inputs(joint: str = "joint", **parameters: Any) -> tuple[Inputs, Recorder]:
+    sink = Recorder()
+    given = {name.replace("__", "."): value for name, value in parameters.items()}
+    return Inputs(joint, JointSettings.from_mapping(given), sink), sink
+
+
+def test_an_unnamed_joint_takes_the_only_one() -> None:
+    feed, sink = inputs()
+    feed.add_motion([joint_state(1, elbow=0.5), joint_state(2, elbow=0.6)])
+    assert sink.motion == [(1, 0.5, 2.0, 3.0), (2, 0.6, 2.0, 3.0)]
+    assert sink.rejected == []
+
+
+def test_an_unnamed_joint_among_several_is_asked_for() -> None:
+    feed, sink = inputs()
+    feed.add_motion([joint_state(1, elbow=0.5, wrist=0.6)])
+    assert sink.motion == []
+    assert "elbow, wrist" in sink.rejected[0]
+    assert "input.joint_name" in sink.rejected[0]
+
+
+def test_a_named_joint_is_taken_from_among_several_whatever_their_order() -> None:
+    feed, sink = inputs("wrist")
+    feed.add_motion([joint_state(1, elbow=0.5, wrist=0.6), joint_state(2, wrist=0.7, elbow=0.8)])
+    assert [row[:2] for row in sink.motion] == [(1, 0.6), (2, 0.7)]
+
+
+def test_input_joint_name_goes_before_the_joints_own_name() -> None:
+    feed, sink = inputs("wrist", input__joint_name="arm_wrist")
+    feed.add_motion([joint_state(1, wrist=0.5, arm_wrist=0.6)])
+    assert sink.motion[0][:2] == (1, 0.6)
+
+
+def test_a_misspelt_joint_is_reported_with_the_names_there_are() -> None:
+    feed, sink = inputs("elbwo")
+    feed.add_motion([joint_state(1, elbow=0.5)])
+    assert sink.motion == []
+    assert "'elbwo' is not in joint_states, which carries elbow" in sink.rejected[0]
+
+
+def test_messages_of_other_publishers_are_no_fault_once_the_joint_is_seen() -> None:
+    messages = [joint_state(1, gripper=9.0), joint_state(2, elbow=0.5), joint_state(3, gripper=9.0)]
+    for batches in ([messages], [[m] for m in messages], [messages[:2], messages[2:]]):
+        feed, sink = inputs("elbow")
+        for batch in batches:
+            feed.add_motion(batch)
+        assert [row[:2] for row in sink.motion] == [(2, 0.5)]
+        assert len(sink.rejected) == 1
+
+
+def test_blocks_come_in_order_and_wrong_layouts_are_reported() -> None:
+    feed, sink = inputs()
+    feed.add_vibration(
+        [
+            block(1, [1.0, 2.0]),
+            block(2, [3.0], sequence=1),
+            block(3, [4.0, 5.0], label="torque"),
+            b"\0\1\0\0",
+            block(4, [6.0, 7.0], sequence=2),
+        ]
+    )
+    assert [b.stamp for b in sink.blocks] == [1, 2, 4]
+    assert [b.samples.tolist() for b in sink.blocks] == [[1.0, 2.0], [3.0], [6.0, 7.0]]
+    assert "labelled 'torque'" in sink.rejected[0]
+    assert len(sink.rejected) == 2
+
+
+@pytest.mark.parametrize(("axis", "expected"), [("x", 2.0), ("y", 4.0), ("-z", -6.0)])
+def test_an_imus_tangential_axis_becomes_angular_by_its_radius(axis: str, expected: float) -> None:
+    feed, sink = inputs(input__source="imu", input__axis=axis, input__sensor_radius=0.5)
+    feed.add_vibration([imu(1, (1.0, 2.0, 3.0))])
+    assert sink.vibration == [(1, expected)]
+
+
+def test_an_imu_without_a_radius_is_refused() -> None:
+    with pytest.raises(ParameterError, match="distance of the IMU"):
+        inputs(input__source="imu", input__sensor_radius=0.0)

@@ -1,0 +1,207 @@
+"""Bulk decoding gives, message for message, what an independent CDR implementation (rosbags) wrote."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from hd_monitor import cdr
+
+typesys = pytest.importorskip("rosbags.typesys")
+STORE = typesys.get_typestore(typesys.Stores.ROS2_JAZZY)
+T = STORE.types
+
+frames = st.text(max_size=12).filter(lambda text: "\0" not in text)
+seconds = st.integers(0, 2**31 - 1)
+nanoseconds = st.integers(0, 999_999_999)
+doubles = st.floats(allow_nan=True, allow_infinity=True)
+headers = st.tuples(seconds, nanoseconds, frames)
+triples = st.tuples(doubles, doubles, doubles)
+
+
+def header(sec: int, nanosec: int, frame: str) -> Any:
+    return T["std_msgs/msg/Header"](T["builtin_interfaces/msg/Time"](sec, nanosec), frame)
+
+
+def vector(values: tuple[float, float, float]) -> Any:
+    return T["geometry_msgs/msg/Vector3"](*values)
+
+
+def raw(message: Any, kind: str, *, little_endian: bool = True) -> bytes:
+    return bytes(STORE.serialize_cdr(message, kind, little_endian=little_endian))
+
+
+def accel(head: tuple[int, int, str], linear: Any, angular: Any, *, little_endian: bool = True) -> bytes:
+    body = T["geometry_msgs/msg/Accel"](vector(linear), vector(angular))
+    message = T["geometry_msgs/msg/AccelStamped"](header(*head), body)
+    return raw(message, "geometry_msgs/msg/AccelStamped", little_endian=little_endian)
+
+
+def imu(head: tuple[int, int, str], linear: Any, angular: Any, *, little_endian: bool = True) -> bytes:
+    covariance = np.arange(9.0)
+    message = T["sensor_msgs/msg/Imu"](
+        header(*head),
+        T["geometry_msgs/msg/Quaternion"](0.1, 0.2, 0.3, 0.4),
+        covariance,
+        vector(angular),
+        covariance,
+        vector(linear),
+        covariance,
+    )
+    return raw(message, "sensor_msgs/msg/Imu", little_endian=little_endian)
+
+
+def joint_state(
+    head: tuple[int, int, str], names: list[str], arrays: list[list[float]], *, little_endian: bool = True
+) -> bytes:
+    values = [np.array(array, dtype=np.float64) for array in arrays]
+    message = T["sensor_msgs/msg/JointState"](header(*head), names, *values)
+    return raw(message, "sensor_msgs/msg/JointState", little_endian=little_endian)
+
+
+def multi_array(
+    dimensions: list[tuple[str, int, int]], offset: int, data: list[float], *, little_endian: bool = True
+) -> bytes:
+    dims = [T["std_msgs/msg/MultiArrayDimension"](*dimension) for dimension in dimensions]
+    layout = T["std_msgs/msg/MultiArrayLayout"](dims, offset)
+    message = T["std_msgs/msg/Float64MultiArray"](layout, np.array(data, dtype=np.float64))
+    return raw(message, "std_msgs/msg/Float64MultiArray", little_endian=little_endian)
+
+
+def stamp(head: tuple[int, int, str]) -> int:
+    return head[0] * 1_000_000_000 + head[1]
+
+
+@pytest.mark.parametrize(("write", "read"), [(accel, cdr.decode_accel_stamped), (imu, cdr.decode_imu)])
+@settings(max_examples=60, deadline=None)
+@given(rows=st.lists(st.tuples(headers, triples, triples, st.booleans()), max_size=8))
+def test_vectors_come_back_in_order_whatever_frames_and_byte_orders_are_mixed(
+    write: Any, read: Any, rows: list[Any]
+) -> None:
+    samples = read([write(head, linear, angular, little_endian=little) for head, linear, angular, little in rows])
+    assert samples.faults == ()
+    assert samples.stamps.tolist() == [stamp(head) for head, *_ in rows]
+    np.testing.assert_array_equal(samples.linear, np.array([row[1] for row in rows]).reshape(-1, 3))
+    np.testing.assert_array_equal(samples.angular, np.array([row[2] for row in rows]).reshape(-1, 3))
+
+
+@st.composite
+def states(draw: st.DrawFn) -> tuple[Any, list[str], list[list[float]], bool]:
+    names = draw(st.lists(st.sampled_from(["a", "elbow", "wrist_1_joint", "ä", ""]), max_size=3, unique=True))
+    arrays = [
+        draw(st.lists(doubles, min_size=len(names), max_size=len(names))) if draw(st.booleans()) else []
+        for _ in range(3)
+    ]
+    return draw(headers), names, arrays, draw(st.booleans())
+
+
+@settings(max_examples=80, deadline=None)
+@given(rows=st.lists(states(), max_size=8))
+def test_joint_states_come_back_by_name_with_nan_for_absent_arrays(rows: list[Any]) -> None:
+    messages = [joint_state(head, names, arrays, little_endian=little) for head, names, arrays, little in rows]
+    groups, faults = cdr.decode_joint_states(messages)
+    assert faults == []
+    assert sorted(place for group in groups for place in group.place.tolist()) == list(range(len(rows)))
+    for group in groups:
+        assert group.place.tolist() == sorted(group.place.tolist())
+        for row, place in enumerate(group.place.tolist()):
+            head, names, arrays, _ = rows[place]
+            assert group.names == tuple(names)
+            assert group.stamps[row] == stamp(head)
+            for got, given_values in zip((group.position, group.velocity, group.effort), arrays, strict=True):
+                expected = given_values or [math.nan] * len(names)
+                np.testing.assert_array_equal(got[row], expected)
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    rows=st.lists(
+        st.tuples(
+            st.lists(st.tuples(st.sampled_from(["torsional_acceleration", "bin", "x"]), seconds, seconds), max_size=2),
+            st.integers(0, 9),
+            st.lists(doubles, max_size=6),
+            st.booleans(),
+        ),
+        max_size=6,
+    )
+)
+def test_multi_arrays_come_back_with_their_layout(rows: list[Any]) -> None:
+    messages = [multi_array(dims, offset, data, little_endian=little) for dims, offset, data, little in rows]
+    groups, faults = cdr.decode_multi_arrays(messages)
+    assert faults == []
+    seen = {}
+    for group in groups:
+        for row, place in enumerate(group.place.tolist()):
+            seen[place] = ([tuple(d) for d in group.dimensions], group.data_offset, group.data[row])
+    assert sorted(seen) == list(range(len(rows)))
+    for place, (dims, offset, data, _) in enumerate(rows):
+        assert seen[place][:2] == (dims, offset)
+        np.testing.assert_array_equal(seen[place][2], data)
+
+
+def test_a_message_cut_off_anywhere_is_a_fault_and_costs_no_other_message() -> None:
+    head = (5, 6, "sensor")
+    writers: list[tuple[bytes, Any]] = [
+        (accel(head, (1, 2, 3), (4, 5, 6)), cdr.decode_accel_stamped),
+        (imu(head, (1, 2, 3), (4, 5, 6)), cdr.decode_imu),
+    ]
+    for whole, decode in writers:
+        for length in range(len(whole)):
+            samples = decode([whole, whole[:length], whole])
+            assert samples.stamps.tolist() == [5_000_000_006] * 2
+            assert len(samples.faults) == 1
+    state = joint_state(head, ["a", "b"], [[1.0, 2.0], [3.0, 4.0], [5.0, 6.0]])
+    block = multi_array([("torsional_acceleration", 2, 2)], 4, [5.0, 6.0, 0.001, 0.0, 1.0, 2.0])
+    for message, decode in ((state, cdr.decode_joint_states), (block, cdr.decode_multi_arrays)):
+        for length in range(len(message)):
+            groups, faults = decode([message, message[:length], message])
+            assert [fault.place for fault in faults] == [1], length
+            assert np.concatenate([group.place for group in groups]).tolist() == [0, 2]
+
+
+@settings(max_examples=200, deadline=None)
+@given(noise=st.binary(max_size=120))
+def test_noise_is_never_more_than_a_fault(noise: bytes) -> None:
+    for message in (noise, b"\0\1\0\0" + noise):
+        for decode in (cdr.decode_accel_stamped, cdr.decode_imu, cdr.decode_joint_states, cdr.decode_multi_arrays):
+            decode([message])
+
+
+def test_arrays_of_another_length_than_the_names_are_a_fault() -> None:
+    good = joint_state((1, 0, ""), ["a", "b"], [[1.0, 2.0], [], []])
+    bad = joint_state((2, 0, ""), ["a", "b"], [[1.0], [], []])
+    groups, faults = cdr.decode_joint_states([good, bad])
+    assert [group.stamps.tolist() for group in groups] == [[1_000_000_000]]
+    assert [fault.place for fault in faults] == [1]
+    assert "2 names but 1 values of position" in faults[0].reason
+
+
+def test_nothing_gives_empty_arrays() -> None:
+    assert cdr.decode_accel_stamped([]).stamps.shape == (0,)
+    assert cdr.decode_accel_stamped([]).linear.shape == (0, 3)
+    assert cdr.decode_joint_states([]) == ([], [])
+    assert cdr.decode_multi_arrays([]) == ([], [])
+
+
+@pytest.mark.ros
+def test_what_the_middleware_serialises_is_read() -> None:
+    from geometry_msgs.msg import AccelStamped
+    from rclpy.serialization import serialize_message
+    from sensor_msgs.msg import JointState
+
+    message = AccelStamped()
+    message.header.stamp.sec, message.header.stamp.nanosec, message.header.frame_id = 7, 8, "rig"
+    message.accel.angular.z, message.accel.linear.y = -2.5, 0.5
+    samples = cdr.decode_accel_stamped([serialize_message(message)])
+    assert samples.faults == ()
+    assert (samples.stamps[0], samples.angular[0, 2], samples.linear[0, 1]) == (7_000_000_008, -2.5, 0.5)
+
+    state = JointState(name=["a", "bc"], velocity=[1.0, 2.0])
+    groups, faults = cdr.decode_joint_states([serialize_message(state)])
+    assert faults == []
+    assert groups[0].names == ("a", "bc")
+    assert groups[0].velocity.tolist() == [[1.0, 2.0]]
+    assert np.isnan(groups[0].position).all()
