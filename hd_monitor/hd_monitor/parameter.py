@@ -14,8 +14,8 @@ Value = bool | int | float | str | tuple[float, ...]
 class Parameter:
     """One parameter: its dotted name, default, unit, range and description; the type is the default's.
 
-    `low` and `high` bound numbers, each number of a list too (inclusive), and numbers are finite; `choices` lists the words
-    allowed.
+    `low` and `high` bound numbers, each number of a list too (inclusive), and numbers are finite; `choices` lists the
+    words allowed.
     """
 
     name: str
@@ -51,13 +51,14 @@ class Parameter:
 
     def _check_list(self, value: object) -> tuple[float, ...]:
         items = list(value) if isinstance(value, Sequence) and not isinstance(value, (str, bytes)) else [value]
-        if not all(isinstance(item, (int, float)) and not isinstance(item, bool) for item in items):
+        numbers = [float(x) for x in items if isinstance(x, (int, float)) and not isinstance(x, bool)]
+        if len(numbers) != len(items):
             raise ParameterError(
                 f"{self.name} = {value!r} has the wrong type; give a list of numbers ({self.description})"
             )
-        for item in items:
-            self._check_number(item)
-        return tuple(float(item) for item in items)
+        for number in numbers:
+            self._check_number(number)
+        return tuple(numbers)
 
     def _check_number(self, value: float) -> None:
         if not (math.isfinite(value) and self.low <= value <= self.high):

@@ -80,8 +80,8 @@ class Reducer:
             )
         if (z2 - z1) % WAVE_GENERATOR_LOBES:
             raise GeometryError(
-                f"the tooth difference {z2} - {z1} = {z2 - z1} is odd: a two-lobe wave generator meshes at two opposite "
-                "places, which then would not fit at once; the difference must be even (usually 2)"
+                f"the tooth difference {z2} - {z1} = {z2 - z1} is odd: a two-lobe wave generator meshes at two "
+                "opposite places, which then would not fit at once; the difference must be even (usually 2)"
             )
         if z2 - z1 > z1 // 2:
             raise GeometryError(
@@ -124,7 +124,7 @@ class Reducer:
     def line_frequencies(self, speed_rpm: float, k: int = 1) -> LinePair:
         """Frequencies [Hz] of the k-th line pair at a wave-generator speed [rpm].
 
-        The circular spline's is ``2 n / 60`` and the flexspline's ``2 n / 60 * z2 / z1`` with the circular spline fixed.
+        With the circular spline fixed its line is at ``2 n / 60`` and the flexspline's at ``2 n / 60 * z2 / z1``.
         """
         self._check_harmonic(k)
         per_second = k * abs(speed_rpm) / 60.0

@@ -30,7 +30,7 @@ class Response(NamedTuple):
 
 
 def gauss_times(times: npt.ArrayLike) -> FloatArray:
-    """Times [s] of the two Gauss points of every step, shape (2, steps), for step ends `times` of shape (steps + 1,)."""
+    """Times [s] of the two Gauss points of every step, shape (2, steps); `times`, shape (steps + 1,), are its ends."""
     t = np.asarray(times, dtype=np.float64)
     start, length = t[:-1], np.diff(t)
     return np.stack([start + c * length for c in GAUSS_OFFSETS])

@@ -200,6 +200,15 @@ class ParametricModel:
             torque += self.torque.load_fluctuation * np.cos(self.torque.load_order * q + self.torque.load_phase)
         return torque
 
+    def acceleration(
+        self, output_angle: npt.ArrayLike, displacement: npt.ArrayLike, velocity: npt.ArrayLike
+    ) -> FloatArray:
+        """Torsional acceleration θ'' [rad/s²] by eq. 3, from q [rad], θ [rad] and θ' [rad/s]."""
+        dynamics, omega = self.dynamics, self.dynamics.angular_frequency
+        restoring = omega**2 * (1.0 + self.stiffness_fluctuation(output_angle)) * np.asarray(displacement)
+        damping = 2.0 * dynamics.damping_ratio * omega * np.asarray(velocity)
+        return np.asarray(self.torque_at(output_angle) / dynamics.inertia - damping - restoring)
+
     def static_deflection(self, output_angle: npt.ArrayLike) -> FloatArray:
         """Wind-up M/K [rad] of the output at rest at the output angle q [rad], any shape."""
         stiffness = self.dynamics.stiffness * (1.0 + self.stiffness_fluctuation(output_angle))

@@ -47,7 +47,7 @@ class SteadyState:
         return float(np.linalg.norm(self.acceleration))
 
     def acceleration_phasor(self, output_order: float) -> complex:
-        """One-sided complex amplitude [rad/s²] of θ'' at `output_order` cycles per output revolution; 0 if not a line."""
+        """One-sided complex amplitude [rad/s²] of θ'' at `output_order` cycles per output revolution; 0 for no line."""
         match = np.flatnonzero(self.orders == round(output_order))
         return 2.0 * complex(self.acceleration[match[0]]) if match.size else 0j
 
