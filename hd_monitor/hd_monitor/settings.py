@@ -105,6 +105,12 @@ PARAMETERS: tuple[Parameter, ...] = (
         description="expected rate of the vibration messages, for the depth of their queue",
     ),
     Parameter(
+        name="input.reliability",
+        default="reliable",
+        choices=("reliable", "best_effort"),
+        description="QoS of the subscriptions; a best-effort publisher is heard by best_effort only, a reliable one by both",
+    ),
+    Parameter(
         name="input.clipping_limit",
         default=0.0,
         unit="rad/s²",
@@ -222,7 +228,13 @@ PARAMETERS: tuple[Parameter, ...] = (
     Parameter(name="diagnosis.latch", default=False, description="keep the worst status until the latch is reset"),
 )
 
+NODE_PARAMETERS: tuple[Parameter, ...] = (
+    Parameter(name="autostart", default=True, description="come up configured and active, without a lifecycle manager"),
+)
+"""Parameters of the node as a whole, besides `joints`: they say nothing about any joint."""
+
 _BY_NAME = {parameter.name: parameter for parameter in PARAMETERS}
+_NO_JOINT_NAMES = {parameter.name for parameter in NODE_PARAMETERS} | {"use_sim_time", "start_type_description_service"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -295,6 +307,11 @@ class JointSettings:
         return self["input.source"] in SENSORLESS_SOURCES
 
 
+def _is_of_the_node(name: str) -> bool:
+    """Whether a parameter belongs to the node or to ROS itself, and so to no joint."""
+    return name in _NO_JOINT_NAMES or name.startswith("qos_overrides.")
+
+
 def split_joints(given: Mapping[str, Any]) -> dict[str, JointSettings]:
     """Settings of every joint in a node's parameters.
 
@@ -314,7 +331,7 @@ def split_joints(given: Mapping[str, Any]) -> dict[str, JointSettings]:
     ParameterError
         If a joint is named twice or a name belongs to no parameter and no joint.
     """
-    flat = flatten(given)
+    flat = {name: value for name, value in flatten(given).items() if not _is_of_the_node(name)}
     joints = flat.pop("joints", None) or ["joint"]
     if isinstance(joints, str) or len(set(joints)) != len(joints):
         raise ParameterError(f"joints = {joints!r} must be a list of different names")
