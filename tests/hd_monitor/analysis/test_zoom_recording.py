@@ -23,7 +23,7 @@ def two_tones(samples):
         design = columns(frequencies)
         return samples - design @ np.linalg.lstsq(design, samples, rcond=None)[0]
 
-    frequencies = least_squares(residual, list(PAIR), x_scale=1e-3, diff_step=1e-6).x
+    frequencies = least_squares(residual, list(PAIR), x_scale=1e-3, diff_step=np.full(2, 1e-6)).x
     a, b, c, d, _ = np.linalg.lstsq(columns(frequencies), samples, rcond=None)[0]
     return frequencies, (math.hypot(a, b), math.hypot(c, d))
 
