@@ -108,7 +108,8 @@ PARAMETERS: tuple[Parameter, ...] = (
         name="input.reliability",
         default="reliable",
         choices=("reliable", "best_effort"),
-        description="QoS of the subscriptions; a best-effort publisher is heard by best_effort only, a reliable one by both",
+        description="QoS of the subscriptions; best_effort hears every publisher, reliable loses nothing but hears "
+        "reliable publishers only",
     ),
     Parameter(
         name="input.clipping_limit",
