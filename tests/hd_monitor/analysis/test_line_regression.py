@@ -161,9 +161,7 @@ def test_strokes_over_one_arc_add_signal_to_noise_ratio_but_no_resolution():
     single = fit_lines(white(rng, one.size), one, PAIR)
     pooled = fit_lines(white(rng, many.size), many, PAIR)
     assert pooled.travel == pytest.approx(single.travel)
-    ratio = (
-        np.trace(pooled.covariance) / pooled.noise_std[0] ** 2 * single.noise_std[0] ** 2 / np.trace(single.covariance)
-    )
+    shapes = [np.trace(fit.covariance) / fit.noise_std[0] ** 2 for fit in (pooled, single)]
     assert shapes[0] / shapes[1] == pytest.approx(1.0 / 16.0, rel=1e-3)
 
 
