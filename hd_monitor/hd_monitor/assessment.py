@@ -1,12 +1,15 @@
 """What a monitor says at one time: the verdict and everything it rests on."""
 
-from dataclasses import dataclass, field
+import math
+from dataclasses import dataclass
 
 from .acquisition.quality import Quality
+from .acquisition.record import Record
 from .analysis.rms_curve import RmsCurve
-from .analysis.zoom import ZoomSpectrum
+from .analysis.zoom import ZoomSpectrum, zoom_spectrum
 from .diagnosis.verdict import Verdict
 from .identification.result import Identification
+from .reducer import Reducer
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -20,23 +23,55 @@ class Assessment:
     verdict : Verdict
     identification : Identification or None
         None as long as nothing could be identified.
-    zoom : ZoomSpectrum or None
-        Around the strongest line pair at the present speed; None while the joint does not turn steadily.
+    steady : Record or None
+        The newest stretch at an almost constant speed; None while the joint does not turn steadily.
+    reducer : Reducer
     rms_curve : RmsCurve
     quality : Quality
         Counters of what came in, since the start.
     speed : float
-        Mean wave-generator speed over the last period [rpm]; NaN without joint states.
+        Mean magnitude of the wave-generator speed over the last period [rpm]; NaN without joint states.
     rms : float
-        RMS of the vibration signal over the last period, in m/s² at the sensor's radius for accelerations.
+        RMS over the last period [m/s²] of the tangential acceleration at the sensor's radius; NaN without any.
+    travel_needed : float
+        Output travel [rad] after which the first pair's lines separate by Fourier means (Hann window).
+    warn_limit, error_limit : float
+        Limits on the indexes in force, fractions.
+    extra : tuple of (str, str)
+        Further keys and values for the status.
     """
 
     stamp: int
     verdict: Verdict
     identification: Identification | None
-    zoom: ZoomSpectrum | None
+    steady: Record | None
+    reducer: Reducer
     rms_curve: RmsCurve
     quality: Quality
     speed: float
     rms: float
-    extra: tuple[tuple[str, str], ...] = field(default=())
+    travel_needed: float
+    warn_limit: float
+    error_limit: float
+    extra: tuple[tuple[str, str], ...] = ()
+
+    @property
+    def strongest_pair(self) -> int:
+        """Number k of the line pair with the largest line; 1 if none is known."""
+        lines = self.identification.lines if self.identification else ()
+        return max(lines, key=lambda line: max(line.amplitude)).k if lines else 1
+
+    @property
+    def zoom(self) -> ZoomSpectrum | None:
+        """Zoom spectrum of θ'' around the strongest pair at the present speed; computed at each call."""
+        steady = self.steady
+        if steady is None:
+            return None
+        rpm = abs(float(steady.speed.mean())) * self.reducer.reduction * 60.0 / math.tau
+        k = self.strongest_pair
+        around = self.reducer.line_frequencies(rpm, k)
+        if around.flexspline >= 0.5 / steady.period:
+            k, around = 1, self.reducer.line_frequencies(rpm, 1)
+        if around.flexspline >= 0.5 / steady.period:
+            return None
+        return zoom_spectrum(steady.acceleration, steady.period, around=around, k=k)

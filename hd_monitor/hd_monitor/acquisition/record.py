@@ -45,7 +45,7 @@ class Record:
     @property
     def times(self) -> FloatArray:
         """Times of the samples [s], relative to the monitor's epoch."""
-        return self.start + self.period * np.arange(len(self))
+        return np.asarray(self.start + self.period * np.arange(len(self)), dtype=np.float64)
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)

@@ -1,0 +1,135 @@
+"""Recovery of the sampling clock: a sensor samples evenly, even where its messages' stamps jitter or some are lost."""
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+_JITTERY = 0.2  # of a period: from here on single differences of stamps no longer tell how many samples are missing
+_SMOOTHING = 20  # samples over which heavy jitter is averaged before missing samples are counted
+_DRIFT = 2e-3  # relative error of the first guess of the period under heavy jitter, at most
+
+
+class Clock(NamedTuple):
+    """An even grid through jittering stamps.
+
+    Attributes
+    ----------
+    order : ndarray of int, shape (kept,)
+        Indexes of the samples kept, in sampling order.
+    number : ndarray of int, shape (kept,)
+        Place of each on the grid, from 0, strictly increasing; a jump is a hole.
+    start, period : float
+        Time of place 0 [s] and sample period [s].
+    jitter : float
+        Standard deviation of the stamps about the grid [s].
+    duplicates : int
+        Samples left out because their stamp stood there before.
+    """
+
+    order: npt.NDArray[np.intp]
+    number: npt.NDArray[np.int64]
+    start: float
+    period: float
+    jitter: float
+    duplicates: int
+
+
+def recover_clock(times: npt.NDArray[np.float64], period: float | None = None) -> Clock | None:
+    """Fit an even grid to stamps in the order of arrival.
+
+    Parameters
+    ----------
+    times : ndarray, shape (N,)
+        Stamps [s], in the order the samples came; duplicates, small disorder and missing samples allowed.
+    period : float, optional
+        Sample period [s] where already known; else it is estimated.
+
+    Returns
+    -------
+    Clock or None
+        None if there are fewer than 3 different stamps: no clock can be told.
+
+    Notes
+    -----
+    Samples that arrive in another order than their stamps were either reordered on the way (sorting makes the stamps
+    even) or have jittering stamps (sorting would scramble the signal). Sorting is
+    done where it leaves even stamps.
+    """
+    order, duplicates = _without_duplicates(times)
+    if order.size < 3:
+        return None
+    t = times[order]
+    steps = np.diff(t)
+    if steps.min() < 0.0:
+        by_stamp = np.argsort(t, kind="stable")
+        if _unevenness(np.diff(t[by_stamp])) <= _JITTERY:
+            order, t = order[by_stamp], t[by_stamp]
+            steps = np.diff(t)
+    typical = period or float(np.median(steps))
+    uneven = _unevenness(steps)
+    if typical <= 0.0 or uneven > _JITTERY:
+        span = min(_SMOOTHING, max(1, t.size // 4))
+        typical = period or float(np.median(t[span:] - t[:-span])) / span
+        if typical <= 0.0:
+            return None
+        number = _count_through_jitter(t, typical, exact=period is not None)
+    else:
+        number = np.concatenate([[0], np.cumsum(np.maximum(np.rint(steps / typical).astype(np.int64), 1))])
+    start, fitted = _line(number, t)
+    if uneven <= _JITTERY and number[-1] >= number.size:  # the first guess of the period can miscount long holes
+        number = np.maximum.accumulate(np.rint((t - start) / fitted).astype(np.int64))
+        number = number - number[0]
+        fresh = np.concatenate([[True], np.diff(number) > 0])
+        if not fresh.all():
+            number = np.concatenate([[0], np.cumsum(np.maximum(np.rint(steps / fitted).astype(np.int64), 1))])
+        start, fitted = _line(number, t)
+    jitter = float(np.sqrt(np.mean((t - start - fitted * number) ** 2)))
+    return Clock(order, number, start, fitted, jitter, duplicates)
+
+
+def _without_duplicates(times: npt.NDArray[np.float64]) -> tuple[npt.NDArray[np.intp], int]:
+    if times.size > 1 and bool((np.diff(times) > 0.0).all()):
+        return np.arange(times.size), 0
+    _, first = np.unique(times, return_index=True)
+    return np.sort(first), int(times.size - first.size)
+
+
+def _unevenness(steps: npt.NDArray[np.float64]) -> float:
+    """Typical deviation of the steps from their median, as a part of it; robust against holes."""
+    middle = float(np.median(steps))
+    return float(np.median(np.abs(steps - middle))) / middle if middle > 0.0 else np.inf
+
+
+def _count_through_jitter(t: npt.NDArray[np.float64], period: float, *, exact: bool) -> npt.NDArray[np.int64]:
+    """Number samples whose stamps jitter by a good part of a period: missing ones show in the smoothed excess only.
+
+    The excess of the stamps over an even count is a whole number everywhere, were it not for the jitter. Averaged, it
+    lies near whole numbers for the true period only: among the periods that the guess allows, that one is taken.
+    """
+    width = min(2 * _SMOOTHING + 1, t.size)
+    count = np.arange(t.size)
+    excess = _smooth((t - t[0]) / period - count, width)
+    if not exact:
+        drift = np.arange(-_DRIFT * t.size, _DRIFT * t.size + 0.25, 0.25) / t.size  # periods per sample
+        some = slice(None, None, max(1, width // 4))
+        whole = np.abs(np.exp(2j * np.pi * (excess[some] - drift[:, None] * count[some])).sum(axis=1))
+        excess = excess - drift[int(np.argmax(whole))] * count
+    # The first sample's own jitter is in every excess: refer to where the excesses lie on average, not to it
+    offset = float(np.angle(np.exp(2j * np.pi * excess).mean())) / (2.0 * np.pi)
+    missing = np.maximum.accumulate(np.rint(excess - offset).astype(np.int64))
+    return np.asarray(count + missing - missing[0], dtype=np.int64)
+
+
+def _smooth(values: npt.NDArray[np.float64], width: int) -> npt.NDArray[np.float64]:
+    """Moving average; towards the ends over what there is."""
+    ones = np.convolve(np.ones(values.size), np.ones(width), mode="same")
+    return np.asarray(np.convolve(values, np.ones(width), mode="same") / ones)
+
+
+def _line(number: npt.NDArray[np.int64], t: npt.NDArray[np.float64]) -> tuple[float, float]:
+    """Least-squares line through t(number): (start, slope)."""
+    mean_n, mean_t = float(number.mean()), float(t.mean())
+    centred = number - mean_n
+    slope = float(centred @ (t - mean_t)) / float(centred @ centred)
+    return mean_t - slope * mean_n, slope

@@ -1,0 +1,93 @@
+"""The joint's motion between its messages: angle, speed and torque at any time."""
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from scipy.interpolate import CubicHermiteSpline
+
+FloatArray = npt.NDArray[np.float64]
+
+_LARGEST_HOLE = 0.25  # s; a joint can change its speed within that in ways that no interpolation knows
+_HOLE_PERIODS = 5.0
+
+
+class Motion(NamedTuple):
+    """Output angle [rad], output speed [rad/s] and torque [N·m] at some times, shape (N,) each; NaN where unknown."""
+
+    angle: FloatArray
+    speed: FloatArray
+    torque: FloatArray
+
+
+class MotionTrack:
+    """Joint states as a function of time, fed a stretch at a time.
+
+    The angle is unwrapped: a joint that reports -π after π is taken to go on turning.
+    """
+
+    def __init__(self) -> None:
+        self._times = np.empty(0)
+        self._rows = np.empty((0, 3))
+
+    def extend(self, times: FloatArray, rows: FloatArray) -> int:
+        """Append messages: times [s], shape (N,), increasing, and rows (position, velocity, effort), shape (N, 3).
+
+        Returns the number of messages left out: not finite in position, or not later than the one before.
+        """
+        good = np.isfinite(rows[:, 0])
+        if self._times.size:
+            good &= times > self._times[-1]
+        good[1:] &= times[1:] > times[:-1]
+        dropped = int(times.size - good.sum())
+        if dropped:
+            times, rows = times[good], rows[good]
+        if not times.size:
+            return dropped
+        rows = rows.copy()
+        self._times = np.concatenate([self._times, times])
+        self._rows = np.concatenate([self._rows, rows])
+        self._rows[:, 0] = np.unwrap(self._rows[:, 0])
+        return dropped
+
+    def forget_before(self, time: float) -> None:
+        """Drop what is no longer needed to interpolate from `time` [s] on."""
+        first = max(0, int(np.searchsorted(self._times, time)) - 2)
+        if first:
+            self._times, self._rows = self._times[first:], self._rows[first:]
+
+    def forget_from(self, time: float) -> None:
+        """Drop the messages of `time` [s] and later: they were only lent to close an interval."""
+        last = int(np.searchsorted(self._times, time))
+        self._times, self._rows = self._times[:last], self._rows[:last]
+
+    def clear(self) -> None:
+        """Forget everything."""
+        self._times = np.empty(0)
+        self._rows = np.empty((0, 3))
+
+    def at(self, times: FloatArray) -> Motion:
+        """Interpolate at `times` [s], shape (N,); NaN outside of the track and in its holes."""
+        unknown = np.full(times.size, np.nan)
+        if self._times.size < 2 or not times.size:
+            return Motion(unknown, unknown, unknown)
+        known, rows = self._times, self._rows
+        steps = np.diff(known)
+        velocity = rows[:, 1]
+        if not np.isfinite(velocity).all():
+            slopes = np.gradient(rows[:, 0], known)
+            velocity = np.where(np.isfinite(velocity), velocity, slopes)
+        angle = CubicHermiteSpline(known, rows[:, 0], velocity, extrapolate=False)(times)
+        speed = np.interp(times, known, velocity)
+        effort = rows[:, 2]
+        torque = np.interp(times, known, effort) if np.isfinite(effort).all() else unknown.copy()
+        limit = min(_LARGEST_HOLE, _HOLE_PERIODS * float(np.median(steps)) + 0.02)
+        place = np.searchsorted(known, times, side="right")
+        outside = (times < known[0]) | (times > known[-1])
+        if steps.max() > limit:
+            inside = np.clip(place, 1, known.size - 1)
+            outside |= steps[inside - 1] > limit
+        if outside.any():
+            for values in (angle, speed, torque):
+                values[outside] = np.nan
+        return Motion(angle, speed, torque)

@@ -1,0 +1,229 @@
+"""Joins vibration and motion of one period into records on an even grid, and counts what was wrong with them."""
+
+import itertools
+import math
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from ..settings import JointSettings
+from .clock import recover_clock
+from .motion import MotionTrack
+from .quality import Quality
+from .record import JointSamples, Record
+from .screening import screen
+from .stream import Samples
+
+FloatArray = npt.NDArray[np.float64]
+
+_NS = 1e-9
+_SHORTEST_RECORD = 8  # samples
+_STANDING = 1e-3  # rad of output travel in a period, below which a constant signal is no sign of a stuck sensor
+
+
+class Harvest(NamedTuple):
+    """What one period gave.
+
+    Attributes
+    ----------
+    records : tuple of Record
+        Contiguous stretches of vibration with their motion, in time order.
+    joint_samples : JointSamples
+        The joint states of the period as they came.
+    vibration : ndarray, shape (N,)
+        All screened vibration samples of the period, those without known motion included; NaN where spoilt.
+    """
+
+    records: tuple[Record, ...]
+    joint_samples: JointSamples
+    vibration: FloatArray
+
+
+@dataclass(slots=True)
+class _Grid:
+    """Where the sampling grid of the last period ended: time of the next sample due [s] and period [s]."""
+
+    due: float
+    period: float
+
+
+class Recorder:
+    """Turns the raw samples of successive periods into records.
+
+    Parameters
+    ----------
+    settings : JointSettings
+    """
+
+    def __init__(self, settings: JointSettings) -> None:
+        self._max_gap: float = settings["analysis.max_gap"]
+        self._full_scale: float = settings["input.clipping_limit"]
+        self._load_source: str = settings["load.source"]
+        self._load_torque: float = settings["load.torque"]
+        self._track = MotionTrack()
+        self._grid: _Grid | None = None
+        self._joined = False
+        self.quality = Quality()
+
+    def cut(self) -> None:
+        """Start anew: what follows belongs to another time base."""
+        self._track.clear()
+        self._grid = None
+        self._joined = False
+
+    def count(self, **changes: int | float | str) -> None:
+        """Add to counters of the quality; words and the rate replace the old value."""
+        old = self.quality
+        values = {
+            name: value if isinstance(value, str) or name == "rate" else getattr(old, name) + value
+            for name, value in changes.items()
+        }
+        self.quality = replace(old, **values)  # type: ignore[arg-type]
+
+    def harvest(self, vibration: Samples, motion: Samples, next_motion: Samples, epoch: int, end: int) -> Harvest:
+        """Join the samples of one period.
+
+        Parameters
+        ----------
+        vibration : Samples
+            One column, θ'' [rad/s²].
+        motion : Samples
+            Three columns: position [rad], velocity [rad/s], effort [N·m].
+        next_motion : Samples
+            The first joint state after the period, or none: it closes the interpolation.
+        epoch, end : int
+            Zero of the core's times and end of the period [ns].
+        """
+        joint_samples = self._motion(motion, next_motion, epoch, end)
+        turning = bool(joint_samples.angle.size) and float(np.ptp(joint_samples.angle)) > _STANDING
+        records, values = self._vibration(vibration, epoch, turning)
+        self._track.forget_from((end - epoch) * _NS)  # the lent message is handed out again with its own period
+        self._track.forget_before((end - epoch) * _NS)
+        return Harvest(records, joint_samples, values)
+
+    def _motion(self, motion: Samples, following: Samples, epoch: int, end: int) -> JointSamples:
+        stamps, rows = motion
+        if stamps.size > 1 and not bool((stamps[1:] > stamps[:-1]).all()):
+            order = np.argsort(stamps, kind="stable")
+            stamps, rows = stamps[order], rows[order]
+        times = _seconds(stamps, epoch)
+        dropped = self._track.extend(times, rows)
+        fault = "joint states without a finite position or with repeated stamps were left out" if dropped else ""
+        self.count(motion_messages=int(stamps.size) - dropped, motion_faults=dropped)
+        if fault:
+            self.count(last_fault=fault)
+        if following.stamps.size:
+            self._track.extend(_seconds(following.stamps, epoch), following.values)
+        good = np.isfinite(rows[:, 0])
+        good[1:] &= stamps[1:] > stamps[:-1]
+        return JointSamples(times=times[good], angle=rows[good, 0], speed=rows[good, 1], effort=rows[good, 2])
+
+    def _vibration(self, samples: Samples, epoch: int, turning: bool) -> tuple[tuple[Record, ...], FloatArray]:
+        if not samples.stamps.size:
+            self._grid, self._joined = None, False
+            return (), np.empty(0)
+        grid = self._grid
+        clock = recover_clock(_seconds(samples.stamps, epoch), grid.period if grid else None)
+        if clock is None:
+            self.count(
+                last_fault="the stamps of the vibration samples do not advance", duplicates=samples.stamps.size - 1
+            )
+            return (), np.empty(0)
+        screened = screen(samples.values[clock.order, 0], full_scale=self._full_scale, turning=turning)
+        self._count_screened(screened.not_finite, screened.clipped, screened.stuck, screened.spikes)
+        self.count(samples=clock.order.size, duplicates=clock.duplicates, rate=1.0 / clock.period)
+        number, start = clock.number, clock.start
+        missing = 0
+        if grid is not None:
+            missing = round((clock.start - grid.due) / clock.period)
+            if missing * clock.period > self._max_gap or missing < 0:
+                self._joined = False
+                self._hole(max(missing, 1))
+                missing = 0
+            elif missing:
+                self._hole(missing)
+        self._grid = _Grid(clock.start + clock.period * (int(number[-1]) + 1), clock.period)
+        steps = np.diff(number)
+        holes = np.flatnonzero(steps > 1)
+        for hole in holes.tolist():
+            self._hole(int(steps[hole]) - 1)
+        cuts = holes[(steps[holes] - 1) * clock.period > self._max_gap] + 1
+        records: list[Record] = []
+        bounds = [0, *cuts.tolist(), number.size]
+        for piece, (first, last) in enumerate(itertools.pairwise(bounds)):
+            if piece:
+                self._joined = False
+            lead = missing if piece == 0 else 0
+            offset = int(number[first]) - lead
+            values = np.full(int(number[last - 1]) - offset + 1, np.nan)
+            values[number[first:last] - offset] = screened.values[first:last]
+            records.extend(self._records(start + clock.period * offset, clock.period, values))
+        return tuple(records), screened.values
+
+    def _records(self, start: float, period: float, values: FloatArray) -> list[Record]:
+        """Cut a contiguous stretch where the motion is unknown."""
+        times: FloatArray = np.asarray(start + period * np.arange(values.size), dtype=np.float64)
+        angle, speed, torque = self._track.at(times)
+        known = np.isfinite(angle)
+        if known.all():
+            spans = [(0, values.size)]
+        else:
+            edges = np.flatnonzero(np.diff(np.concatenate([[False], known, [False]]).astype(np.int8)))
+            spans = list(zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True))
+        torque = self._torque(torque)
+        records = []
+        for first, last in spans:
+            if first:
+                self._joined = False
+            if last - first >= _SHORTEST_RECORD or self._joined:
+                part = slice(first, last)
+                records.append(
+                    Record(
+                        start=float(times[first]),
+                        period=period,
+                        acceleration=values[part],
+                        angle=angle[part],
+                        speed=speed[part],
+                        torque=torque[part],
+                        continues=self._joined,
+                    )
+                )
+                self._joined = last == values.size
+            else:
+                self._joined = False
+        if not spans or spans[-1][1] != values.size:
+            self._joined = False
+        return records
+
+    def _torque(self, effort: FloatArray) -> FloatArray:
+        """Pick the transmitted torque; drivers that measure no effort report zeros."""
+        known = np.isfinite(effort)
+        measured = bool(known.any()) and bool((effort[known] != 0.0).any())
+        if self._load_source in ("auto", "effort") and measured:
+            return effort
+        if self._load_source in ("auto", "parameter") and self._load_torque != 0.0:
+            return np.full(effort.size, self._load_torque)
+        return np.full(effort.size, math.nan)
+
+    def _hole(self, lost: int) -> None:
+        self.count(gaps=1, lost=lost)
+
+    def _count_screened(self, not_finite: int, clipped: int, stuck: int, spikes: int) -> None:
+        if not (not_finite or clipped or stuck or spikes):
+            return
+        self.count(not_finite=not_finite, clipped=clipped, stuck=stuck, spikes=spikes)
+        names = {
+            "are not finite": not_finite,
+            "are clipped": clipped,
+            "did not change while they should": stuck,
+            "are spikes": spikes,
+        }
+        worst = max(names, key=lambda name: names[name])
+        self.count(last_fault=f"{names[worst]} vibration samples of the last period {worst} and were left out")
+
+
+def _seconds(stamps: npt.NDArray[np.int64], epoch: int) -> FloatArray:
+    """Stamps [ns] as times [s] relative to the epoch [ns]."""
+    return np.asarray((stamps - epoch) * _NS, dtype=np.float64)

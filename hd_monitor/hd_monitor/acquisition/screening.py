@@ -1,0 +1,85 @@
+"""Screening of vibration samples: values that are no vibration are left out and counted, never used in silence."""
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+FloatArray = npt.NDArray[np.float64]
+
+_SPIKE = 8.0  # robust standard deviations of the curvature; a sine never exceeds 2
+_STUCK_RUN = 32  # equal samples in a row: no sensor at rest is that quiet
+_CLIPPED_RUN = 3  # equal samples in a row at the extreme: a flat top
+
+
+class Screened(NamedTuple):
+    """Values with the bad ones replaced by NaN, shape (N,), and how many of each kind there were."""
+
+    values: FloatArray
+    not_finite: int
+    clipped: int
+    stuck: int
+    spikes: int
+
+
+def screen(values: FloatArray, *, full_scale: float = 0.0, turning: bool = True) -> Screened:
+    """Find values that are not finite, clipped, stuck or spikes.
+
+    Parameters
+    ----------
+    values : ndarray, shape (N,)
+        Vibration samples in sampling order.
+    full_scale : float
+        Magnitude from which a sample counts as clipped; 0 looks for flat tops at the extremes instead.
+    turning : bool
+        Whether the joint turned: a standing one may well give a constant signal, a turning one never.
+    """
+    clean = np.array(values, dtype=np.float64)
+    finite = np.isfinite(clean)
+    not_finite = int(clean.size - finite.sum())
+    if not_finite:
+        clean[~finite] = np.nan
+    if clean.size < 3:
+        return Screened(clean, not_finite, 0, 0, 0)
+    clipped, stuck = _flat_samples(clean, full_scale)
+    if not turning:
+        stuck[:] = False
+    clean[clipped | stuck] = np.nan
+    spikes = _spikes(clean)
+    clean[spikes] = np.nan
+    return Screened(clean, not_finite, int(clipped.sum()), int(stuck.sum()), int(spikes.size))
+
+
+def _flat_samples(values: FloatArray, full_scale: float) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]]:
+    none = np.zeros(values.size, dtype=np.bool_)
+    clipped = np.abs(values) >= full_scale if full_scale > 0.0 else none
+    equal = values[1:] == values[:-1]
+    if not equal.any():
+        return clipped, none
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], equal, [False]]).astype(np.int8)))
+    stuck = none.copy()
+    flat = none.copy()
+    high, low = np.nanmax(values), np.nanmin(values)
+    for first, last in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
+        run = slice(first, last + 1)
+        length = last + 1 - first
+        if length >= _STUCK_RUN:
+            stuck[run] = True
+        elif full_scale == 0.0 and length >= _CLIPPED_RUN and values[first] in (high, low) and high > low:
+            flat[run] = True
+    return (clipped | flat) & ~stuck, stuck
+
+
+def _spikes(values: FloatArray) -> npt.NDArray[np.intp]:
+    """Indexes of single samples that stick out of their neighbours."""
+    curvature = np.abs(values[1:-1] - 0.5 * (values[:-2] + values[2:]))
+    known = curvature[np.isfinite(curvature)]
+    if known.size < 16:
+        return np.empty(0, dtype=np.intp)
+    limit = _SPIKE * 1.4826 * float(np.median(known))
+    if limit == 0.0 or not (known > limit).any():
+        return np.empty(0, dtype=np.intp)
+    # the neighbours of a spike bend too, half as much: only the local maximum is the spike
+    padded = np.concatenate([[0.0, 0.0], np.nan_to_num(curvature), [0.0, 0.0]])
+    peak = (padded[2:-2] >= padded[1:-3]) & (padded[2:-2] >= padded[3:-1]) & (padded[2:-2] > limit)
+    return np.flatnonzero(peak) + 1

@@ -1,0 +1,152 @@
+"""Stamped samples of one input, in the order they came, until the time they belong to is complete.
+
+Only the input's own stamps decide what is late or a jump of the clock, never how messages of several inputs interleave:
+that makes a replay equal to the live run.
+"""
+
+from collections import deque
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+FloatArray = npt.NDArray[np.float64]
+StampArray = npt.NDArray[np.int64]
+
+LATENESS = 50_000_000
+"""A sample may come this long [ns] after a later one and is still sorted in."""
+
+CLOCK_JUMP = 1_000_000_000
+"""A stamp further back than this [ns] is a clock that was set back, not a late message."""
+
+
+class Samples(NamedTuple):
+    """Stamps [ns], shape (N,), and values, shape (N, columns), in the order of arrival."""
+
+    stamps: StampArray
+    values: FloatArray
+
+
+@dataclass(slots=True)
+class _Epoch:
+    """What came between two jumps of the clock."""
+
+    chunks: list[Samples] = field(default_factory=list)
+    newest: int | None = None
+    oldest: int | None = None
+
+
+class StampedBuffer:
+    """Buffer of one input.
+
+    Parameters
+    ----------
+    columns : int
+        Values per sample.
+
+    Attributes
+    ----------
+    late, disordered, jumps : int
+        Samples dropped because they came too late, samples that came late but in time, and jumps of the clock.
+    """
+
+    def __init__(self, columns: int) -> None:
+        self._columns = columns
+        self._epochs: deque[_Epoch] = deque([_Epoch()])
+        self.late = 0
+        self.disordered = 0
+        self.jumps = 0
+
+    def add(self, stamps: StampArray, values: FloatArray) -> None:
+        """Append samples: stamps [ns] of shape (N,), values of shape (N, columns)."""
+        if not stamps.size:
+            return
+        epoch = self._epochs[-1]
+        newest = epoch.newest if epoch.newest is not None else int(stamps[0])
+        if int(stamps[0]) >= newest and (stamps.size == 1 or bool((stamps[1:] >= stamps[:-1]).all())):
+            self._append(epoch, stamps, values)  # the common case: everything in order
+            return
+        before = np.maximum.accumulate(np.concatenate([[newest], stamps]))[:-1]
+        behind = before - stamps
+        back = np.flatnonzero(behind > CLOCK_JUMP)
+        if back.size:
+            first = int(back[0])
+            self.add(stamps[:first], values[:first])
+            self.jumps += 1
+            self._epochs.append(_Epoch())
+            self.add(stamps[first:], values[first:])
+            return
+        keep = behind <= LATENESS
+        self.late += int(stamps.size - keep.sum())
+        self.disordered += int((behind[keep] > 0).sum())
+        self._append(epoch, stamps[keep], values[keep])
+
+    def _append(self, epoch: _Epoch, stamps: StampArray, values: FloatArray) -> None:
+        if stamps.size:
+            epoch.chunks.append(Samples(stamps, values))
+            low, high = int(stamps.min()), int(stamps.max())
+            epoch.newest = high if epoch.newest is None else max(high, epoch.newest)
+            epoch.oldest = low if epoch.oldest is None else min(low, epoch.oldest)
+
+    @property
+    def complete_until(self) -> int | None:
+        """Time [ns] before which nothing more will be accepted; None before the first sample."""
+        newest = self._epochs[0].newest
+        return None if newest is None else newest - LATENESS
+
+    @property
+    def newest(self) -> int | None:
+        """Latest stamp [ns] since the last jump of the clock that was passed."""
+        return self._epochs[0].newest
+
+    @property
+    def oldest(self) -> int | None:
+        """Earliest stamp [ns] of the samples still here."""
+        return self._epochs[0].oldest
+
+    @property
+    def jumped(self) -> bool:
+        """Whether the clock was set back after the samples that are handed out now."""
+        return len(self._epochs) > 1
+
+    @property
+    def seconds_after_jump(self) -> float:
+        """Time [s] covered by samples that came after the clock was set back."""
+        if not self.jumped:
+            return 0.0
+        newest, oldest = self._epochs[1].newest, self._epochs[1].oldest
+        return 0.0 if newest is None or oldest is None else (newest - oldest) * 1e-9
+
+    def pass_jump(self) -> None:
+        """Go on to what came after the clock was set back."""
+        if self.jumped:
+            self._epochs.popleft()
+
+    def take(self, until: int) -> Samples:
+        """Remove and return the samples stamped before `until` [ns], in the order of arrival."""
+        epoch = self._epochs[0]
+        taken, left = [], []
+        for chunk in epoch.chunks:
+            early = chunk.stamps < until
+            if early.all():
+                taken.append(chunk)
+            elif not early.any():
+                left.append(chunk)
+            else:
+                taken.append(Samples(chunk.stamps[early], chunk.values[early]))
+                left.append(Samples(chunk.stamps[~early], chunk.values[~early]))
+        epoch.chunks = left
+        epoch.oldest = min((int(chunk.stamps.min()) for chunk in left), default=None)
+        if not taken:
+            return Samples(np.empty(0, dtype=np.int64), np.empty((0, self._columns)))
+        return Samples(np.concatenate([c.stamps for c in taken]), np.concatenate([c.values for c in taken]))
+
+    def peek_first(self) -> Samples:
+        """Return the earliest sample still here without removing it, or none."""
+        best: Samples | None = None
+        for chunk in self._epochs[0].chunks:
+            index = int(np.argmin(chunk.stamps))
+            if best is None or chunk.stamps[index] < best.stamps[0]:
+                best = Samples(chunk.stamps[index : index + 1], chunk.values[index : index + 1])
+        return best or Samples(np.empty(0, dtype=np.int64), np.empty((0, self._columns)))

@@ -1,0 +1,73 @@
+"""The newest stretch at an almost constant speed: what a spectrum over time may be taken of."""
+
+import math
+from collections import deque
+
+import numpy as np
+
+from ..acquisition.record import Record
+from ..reducer import Reducer
+
+_SPEED_TOLERANCE = 0.02  # of the speed: more would smear the lines of a pair (1.25 % apart) into each other anyway
+_REVOLUTIONS = 2.0  # of the output kept: twice what a Hann window needs for the first pair
+_LONGEST = 60.0  # s
+
+
+class SteadyStretch:
+    """Collects successive records as long as they follow each other at the same speed.
+
+    Parameters
+    ----------
+    reducer : Reducer
+    minimum_speed : float
+        Wave-generator speed [rpm] below which the joint counts as standing.
+    """
+
+    def __init__(self, reducer: Reducer, minimum_speed: float) -> None:
+        self._minimum = minimum_speed * math.tau / 60.0 / reducer.reduction
+        self._parts: deque[Record] = deque()
+
+    def add(self, record: Record) -> None:
+        """Append a record, or start anew with it where it does not continue or the speed has changed."""
+        first, last = float(record.speed.min()), float(record.speed.max())
+        reference = float(self._parts[0].speed.mean()) if self._parts else 0.5 * (first + last)
+        if not self._parts or not record.continues or not _near(first, last, reference):
+            self._parts.clear()
+        reference = reference if self._parts else 0.5 * (first + last)
+        if not _near(first, last, reference) or abs(reference) <= self._minimum:
+            self._parts.clear()
+            return
+        self._parts.append(record)
+        while len(self._parts) > 1 and self._too_long():
+            self._parts.popleft()
+
+    def interrupt(self) -> None:
+        """Forget the stretch: nothing followed it."""
+        self._parts.clear()
+
+    def _too_long(self) -> bool:
+        rest, newest = self._parts[1], self._parts[-1]
+        travel = abs(float(newest.angle[-1] - rest.angle[0])) / math.tau
+        return travel > _REVOLUTIONS or newest.start + newest.period * len(newest) - rest.start > _LONGEST
+
+    def record(self) -> Record | None:
+        """Return the stretch as one record, or None while the speed is not steady."""
+        if not self._parts:
+            return None
+        parts = list(self._parts)
+        if len(parts) == 1:
+            return parts[0]
+        return Record(
+            start=parts[0].start,
+            period=float(np.mean([part.period for part in parts])),
+            acceleration=np.concatenate([part.acceleration for part in parts]),
+            angle=np.concatenate([part.angle for part in parts]),
+            speed=np.concatenate([part.speed for part in parts]),
+            torque=np.concatenate([part.torque for part in parts]),
+            continues=parts[0].continues,
+        )
+
+
+def _near(first: float, last: float, reference: float) -> bool:
+    margin = _SPEED_TOLERANCE * abs(reference)
+    return abs(first - reference) <= margin and abs(last - reference) <= margin

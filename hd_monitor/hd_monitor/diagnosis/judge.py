@@ -1,0 +1,198 @@
+"""From evidence to a verdict: limits with hysteresis, confidence, confirmation N of M, latch."""
+
+from collections import Counter, deque
+from dataclasses import dataclass, replace
+
+from ..identification.result import Identification
+from ..settings import JointSettings
+from .probability import Probabilities, component_probabilities, name_component
+from .verdict import Component, FaultCode, Level, Verdict
+from .wording import (
+    describe_component,
+    describe_doubtful_limit,
+    describe_doubtful_name,
+    describe_relative,
+)
+
+FAULT_CODES = {
+    Component.NONE: FaultCode.OK,
+    Component.FLEXSPLINE: FaultCode.FLEXSPLINE,
+    Component.CIRCULAR_SPLINE: FaultCode.CIRCULAR_SPLINE,
+    Component.BOTH: FaultCode.BOTH_SPLINES,
+    Component.UNDETERMINED: FaultCode.UNDETERMINED,
+}
+
+_SHARP = 0.1  # an index whose standard deviation is below this part of the limit is compared with it as it stands
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """Limits on the indexes and the rules around them, from the settings ``diagnosis.*``."""
+
+    warn: float
+    error: float
+    both_ratio: float
+    confidence: float
+    hysteresis: float
+    confirm_count: int
+    confirm_window: int
+    latch: bool
+
+    @classmethod
+    def from_settings(cls, settings: JointSettings) -> "Limits":
+        """Read the limits from a joint's settings."""
+        return cls(
+            settings["diagnosis.warn_index"],
+            settings["diagnosis.error_index"],
+            settings["diagnosis.both_ratio"],
+            settings["diagnosis.confidence"],
+            settings["diagnosis.hysteresis"],
+            settings["diagnosis.confirm_count"],
+            settings["diagnosis.confirm_window"],
+            settings["diagnosis.latch"],
+        )
+
+
+class Judge:
+    """Keeps one joint's verdict.
+
+    Parameters
+    ----------
+    limits : Limits
+
+    Notes
+    -----
+    A verdict about the present evidence becomes the shown one when `confirm_count` of the last `confirm_window`
+    verdicts agree on component and level; until the first agreement the verdict is undetermined. Wording and figures
+    follow the evidence at once. A latched verdict stays until a worse one or :meth:`reset_latch`.
+    """
+
+    def __init__(self, limits: Limits) -> None:
+        self._limits = limits
+        self._recent: deque[tuple[Component, Level]] = deque(maxlen=limits.confirm_window)
+        self._shown: Verdict | None = None
+        self._latched: Verdict | None = None
+
+    @property
+    def limits(self) -> Limits:
+        """The limits in force."""
+        return self._limits
+
+    def change_limits(self, limits: Limits) -> None:
+        """Put other limits in force; what is shown stays until the next verdicts."""
+        self._limits = limits
+        self._recent = deque(self._recent, maxlen=limits.confirm_window)
+        if not limits.latch:
+            self._latched = None
+
+    def reset_latch(self) -> None:
+        """Let go of a latched verdict."""
+        self._latched = None
+
+    def judge(self, evidence: Identification | None, missing: str) -> Verdict:
+        """Judge the evidence at one time.
+
+        Parameters
+        ----------
+        evidence : Identification or None
+        missing : str
+            What is still missing, in words, for the case that there is no evidence yet.
+        """
+        now = self._assess(evidence, missing)
+        self._recent.append((now.component, now.level))
+        shown = self._shown
+        count = Counter(self._recent)[(now.component, now.level)]
+        same = shown is not None and (shown.component, shown.level) == (now.component, now.level)
+        if same or count >= self._limits.confirm_count:
+            shown = now
+        elif shown is None:
+            shown = self._undetermined(f"{now.reason} (to be confirmed: {count} of {self._limits.confirm_count})")
+        self._shown = shown
+        return self._latch(shown)
+
+    def _latch(self, shown: Verdict) -> Verdict:
+        if not self._limits.latch:
+            return shown
+        held = self._latched
+        worse = held is None or shown.level > held.level or shown.component == held.component
+        if shown.level > Level.OK and shown.component is not Component.UNDETERMINED and worse:
+            self._latched = held = shown
+        if held is None or held is shown:
+            return shown
+        return replace(held, reason=f"latched: {held.reason} (now: {shown.reason})")
+
+    def _assess(self, evidence: Identification | None, missing: str) -> Verdict:
+        if evidence is None:
+            return self._undetermined(missing)
+        if evidence.blockers:
+            return self._undetermined("; ".join(evidence.blockers), self._magnitude(evidence))
+        if evidence.relative:
+            return self._assess_relative(evidence)
+        limits = self._limits
+        held = self._shown.component if self._shown is not None else Component.UNDETERMINED
+        alarmed = held not in (Component.NONE, Component.UNDETERMINED) or (
+            self._shown is not None and self._shown.level > Level.OK and held is not Component.UNDETERMINED
+        )
+        limit = limits.warn * (1.0 - limits.hysteresis) if alarmed else limits.warn
+        component = name_component(evidence.index, limit, limits.both_ratio)
+        odds = component_probabilities(evidence, limit, limits.both_ratio)
+        worst = max(zip(evidence.index, evidence.index_std, strict=True))
+        sharp = max(evidence.index_std) < _SHARP * limits.warn
+        if component is Component.NONE:
+            if sharp or odds.none >= limits.confidence:
+                return self._named(component, Level.OK, evidence)
+            return self._undetermined(describe_doubtful_limit(evidence, limit, worst))
+        if not sharp and 1.0 - odds.none < limits.confidence:
+            return self._undetermined(describe_doubtful_limit(evidence, limit, worst))
+        level = self._magnitude(evidence)
+        if self._contradicted(component, odds):
+            return self._undetermined(describe_doubtful_name(evidence, odds), level)
+        return self._named(component, level, evidence)
+
+    def _assess_relative(self, evidence: Identification) -> Verdict:
+        """Without the torque only the ratio of the two indexes means something: no limit applies."""
+        component = name_component(evidence.index, 0.0, self._limits.both_ratio)
+        odds = component_probabilities(evidence, 0.0, self._limits.both_ratio)
+        if self._contradicted(component, odds):
+            return self._undetermined(describe_doubtful_name(evidence, odds), Level.OK)
+        return Verdict(
+            component=component,
+            level=Level.OK,
+            fault_code=FAULT_CODES[component],
+            reason=describe_relative(component, evidence),
+        )
+
+    def _contradicted(self, component: Component, odds: Probabilities) -> bool:
+        """Whether a part that should not be named alone could be the one after all, beyond the confidence asked for."""
+        opposite = {
+            Component.CIRCULAR_SPLINE: odds.flexspline,
+            Component.FLEXSPLINE: odds.circular_spline,
+            Component.BOTH: min(odds.circular_spline, odds.flexspline),
+            Component.NONE: 0.0,
+        }[component]
+        return opposite > 1.0 - self._limits.confidence
+
+    def _magnitude(self, evidence: Identification) -> Level:
+        """Level that the larger index calls for, whichever spline it belongs to."""
+        if evidence.relative:
+            return Level.OK
+        limits = self._limits
+        shown = self._shown.level if self._shown is not None else Level.OK
+        easier = 1.0 - limits.hysteresis
+        larger = max(evidence.index)
+        if larger >= limits.error * (easier if shown is Level.ERROR else 1.0):
+            return Level.ERROR
+        return Level.WARN if larger >= limits.warn * (easier if shown > Level.OK else 1.0) else Level.OK
+
+    def _named(self, component: Component, level: Level, evidence: Identification) -> Verdict:
+        reason = describe_component(component, level, evidence, self._limits.warn, self._limits.error)
+        return Verdict(component=component, level=level, fault_code=FAULT_CODES[component], reason=reason)
+
+    @staticmethod
+    def _undetermined(reason: str, level: Level = Level.WARN) -> Verdict:
+        return Verdict(
+            component=Component.UNDETERMINED,
+            level=max(level, Level.WARN),
+            fault_code=FaultCode.UNDETERMINED,
+            reason=reason,
+        )

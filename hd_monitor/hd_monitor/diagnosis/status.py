@@ -1,0 +1,103 @@
+"""A verdict as diagnostic status: plain words and numbers, the same for the node, the replay and the report."""
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from ..settings import JointSettings
+
+if TYPE_CHECKING:
+    from ..assessment import Assessment
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Status:
+    """What goes into a diagnostic_msgs/DiagnosticStatus, but for its name.
+
+    Attributes
+    ----------
+    level : int
+        0 OK, 1 WARN, 2 ERROR.
+    message, hardware_id : str
+    values : tuple of (str, str)
+        Keys with their units, and values: one plain number or word each.
+    """
+
+    level: int
+    message: str
+    hardware_id: str
+    values: tuple[tuple[str, str], ...]
+
+    def value(self, key: str) -> str:
+        """Return the value of a key."""
+        return dict(self.values)[key]
+
+
+def _number(value: float, digits: int = 3) -> str:
+    return "unknown" if math.isnan(value) else f"{value:.{digits}f}"
+
+
+def status_of(assessment: "Assessment", joint: str, settings: JointSettings) -> Status:
+    """Write an assessment as a status.
+
+    Parameters
+    ----------
+    assessment : Assessment
+    joint : str
+        Name of the joint.
+    settings : JointSettings
+    """
+    verdict, found, quality = assessment.verdict, assessment.identification, assessment.quality
+    nan = math.nan
+    degrees = math.degrees(found.travel) if found else 0.0
+    values = [
+        ("joint", joint),
+        ("component", verdict.component.value),
+        ("fault_code", verdict.fault_code.value),
+        ("reason", verdict.reason),
+        ("speed (rpm)", _number(assessment.speed, 1)),
+        ("rms (m/s^2)", _number(assessment.rms, 4)),
+        ("flexspline index (%)", _number(100.0 * found.index.flexspline if found else nan)),
+        ("flexspline index std (%)", _number(100.0 * found.index_std.flexspline if found else nan)),
+        ("circular spline index (%)", _number(100.0 * found.index.circular_spline if found else nan)),
+        ("circular spline index std (%)", _number(100.0 * found.index_std.circular_spline if found else nan)),
+        ("index kind", ("relative" if found.relative else "absolute") if found else "unknown"),
+        ("warn limit (%)", _number(100.0 * assessment.warn_limit)),
+        ("error limit (%)", _number(100.0 * assessment.error_limit)),
+        ("travel (deg)", _number(degrees, 1)),
+        ("travel needed (deg)", _number(math.degrees(assessment.travel_needed), 1)),
+        ("signal to noise (dB)", _number(found.signal_to_noise if found else nan, 1)),
+        ("misfit", _number(found.misfit if found else nan, 2)),
+        ("natural frequency (Hz)", _number(found.natural_frequency if found else nan, 2)),
+        ("natural frequency std (Hz)", _number(found.natural_frequency_std if found else nan, 2)),
+        ("damping ratio", _number(found.damping_ratio if found else nan, 4)),
+        ("load fluctuation (N*m)", _number(found.load_fluctuation if found else nan)),
+        ("unstable from (rpm)", _speed(found.instability_speed if found else nan)),
+        ("samples", str(quality.samples)),
+        ("samples used", str(found.samples if found else 0)),
+        ("sampling rate (Hz)", _number(quality.rate, 2)),
+        ("gaps", str(quality.gaps)),
+        ("lost samples", str(quality.lost)),
+        ("duplicates", str(quality.duplicates)),
+        ("out of order", str(quality.out_of_order)),
+        ("not finite", str(quality.not_finite)),
+        ("clipped", str(quality.clipped)),
+        ("stuck", str(quality.stuck)),
+        ("spikes", str(quality.spikes)),
+        ("clock jumps", str(quality.clock_jumps)),
+        ("joint states", str(quality.motion_messages)),
+        ("bad joint states", str(quality.motion_faults)),
+        ("rejected messages", str(quality.rejected)),
+        ("last complaint", quality.last_fault or "none"),
+        *assessment.extra,
+    ]
+    return Status(
+        level=int(verdict.level),
+        message=verdict.reason,
+        hardware_id=settings["reducer.serial"],
+        values=tuple(values),
+    )
+
+
+def _speed(rpm: float) -> str:
+    return "never" if math.isinf(rpm) else _number(rpm, 0)

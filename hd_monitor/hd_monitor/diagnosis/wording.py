@@ -1,0 +1,81 @@
+"""Sentences of a verdict, in the words of a maintenance technician."""
+
+import math
+
+from ..identification.result import Identification
+from .probability import Probabilities
+from .verdict import Component, Level
+
+PART_NAMES = {
+    Component.FLEXSPLINE: "flexspline",
+    Component.CIRCULAR_SPLINE: "circular spline",
+    Component.BOTH: "flexspline and circular spline",
+}
+
+
+def _percent(value: float) -> str:
+    return f"{100.0 * value:.1f} %"
+
+
+def _indexes(evidence: Identification) -> str:
+    index, std = evidence.index, evidence.index_std
+    return (
+        f"flexspline index {_percent(index.flexspline)} ± {_percent(std.flexspline)}, "
+        f"circular spline index {_percent(index.circular_spline)} ± {_percent(std.circular_spline)}"
+    )
+
+
+def _with_doubts(sentence: str, evidence: Identification) -> str:
+    return "; ".join([sentence, *evidence.doubts])
+
+
+def describe_component(
+    component: Component, level: Level, evidence: Identification, warn_limit: float, error_limit: float
+) -> str:
+    """Say which part is at fault and by how much its index exceeds the limit."""
+    if component is Component.NONE:
+        return _with_doubts(f"Both splines are sound: {_indexes(evidence)}, limit {_percent(warn_limit)}", evidence)
+    limit, word = (error_limit, "defective") if level is Level.ERROR else (warn_limit, "suspect")
+    verb = "are" if component is Component.BOTH else "is"
+    sentence = (
+        f"The {PART_NAMES[component]} {verb} {word}: {_indexes(evidence)}, {level.name.lower()} limit {_percent(limit)}"
+    )
+    if component is not Component.FLEXSPLINE:
+        sentence += "; wave generator, motor shaft and motor ripple share the circular spline's line: check them too"
+    return _with_doubts(sentence, evidence)
+
+
+def describe_relative(component: Component, evidence: Identification) -> str:
+    """Say which line dominates where its size in per cent of the stiffness cannot be known."""
+    index = evidence.index
+    larger, smaller = max(index), min(index)
+    ratio = f"{larger / smaller:.1f} times the other" if smaller > 0.0 else "the other does not show"
+    if component is Component.BOTH:
+        sentence = "Flexspline and circular spline contribute about equally"
+    else:
+        sentence = f"The {PART_NAMES[component]} dominates ({ratio})"
+    return _with_doubts(
+        f"{sentence}; relative only, as torque or transfer function are unknown: compare with a baseline",
+        evidence,
+    )
+
+
+def describe_doubtful_limit(evidence: Identification, limit: float, worst: tuple[float, float]) -> str:
+    """Say that the index may lie on either side of the limit, and what would help."""
+    index, std = worst
+    factor = (std / max(abs(index - limit), 0.1 * limit)) ** 2
+    return _with_doubts(
+        f"The larger index, {_percent(index)} ± {_percent(std)}, lies about the limit of {_percent(limit)}; "
+        f"about {max(2, math.ceil(4.0 * factor))} times the present motion would tell",
+        evidence,
+    )
+
+
+def describe_doubtful_name(evidence: Identification, odds: Probabilities) -> str:
+    """Say that a defect shows but not whose it is."""
+    shares = f"circular spline {odds.circular_spline:.0%}, flexspline {odds.flexspline:.0%}, both {odds.both:.0%}"
+    return _with_doubts(
+        f"A stiffness defect shows ({_indexes(evidence)}) but not in which spline (probabilities: {shares}); "
+        "more output travel, or another speed, would tell",
+        evidence,
+    )

@@ -1,0 +1,58 @@
+"""The motion between joint states: exact for smooth motion, unknown in holes and outside."""
+
+import numpy as np
+import pytest
+from hd_monitor.acquisition.motion import MotionTrack
+from hypothesis import given
+from hypothesis import strategies as st
+
+
+def fed(times: np.ndarray, rows: np.ndarray, chunk: int = 10_000) -> MotionTrack:
+    track = MotionTrack()
+    for first in range(0, times.size, chunk):
+        track.extend(times[first : first + chunk], rows[first : first + chunk])
+    return track
+
+
+@given(coefficients=st.tuples(*[st.floats(-1.0, 1.0)] * 4), chunk=st.integers(1, 120))
+def test_cubic_motion_is_exact(coefficients: tuple[float, ...], chunk: int) -> None:
+    curve = np.polynomial.Polynomial(coefficients)
+    times = np.sort(np.random.default_rng(2).uniform(0.0, 1.0, 120))
+    rows = np.column_stack([curve(times), curve.deriv()(times), np.full(120, 7.0)])
+    inside = np.linspace(times[0], times[-1], 333)
+    angle, _, torque = fed(times, rows, chunk).at(inside)
+    assert np.allclose(angle, curve(inside), atol=1e-12)
+    assert np.allclose(torque, 7.0)
+
+
+def test_a_joint_that_wraps_goes_on_turning() -> None:
+    times = np.arange(0.0, 10.0, 0.01)
+    true = 2.0 * times
+    wrapped = (true + np.pi) % (2 * np.pi) - np.pi
+    rows = np.column_stack([wrapped, np.full_like(true, 2.0), np.zeros_like(true)])
+    angle = fed(times, rows, 7).at(times[:-1] + 0.005).angle
+    assert np.allclose(angle, true[:-1] + 0.01, atol=1e-9)
+
+
+def test_holes_and_the_outside_are_unknown() -> None:
+    times = np.r_[0.0:1.0:0.01, 2.0:3.0:0.01]
+    rows = np.column_stack([times, np.ones_like(times), np.zeros_like(times)])
+    angle = fed(times, rows).at(np.array([-0.1, 0.5, 1.5, 2.5, 3.5]))[0]
+    assert np.array_equal(np.isnan(angle), [True, False, True, False, True])
+
+
+def test_missing_velocity_is_differentiated_and_missing_effort_stays_unknown() -> None:
+    times = np.arange(0.0, 1.0, 0.01)
+    rows = np.column_stack([np.sin(times), np.full_like(times, np.nan), np.full_like(times, np.nan)])
+    motion = fed(times, rows).at(times[5:-5] + 0.003)
+    assert np.allclose(motion.angle, np.sin(times[5:-5] + 0.003), atol=1e-6)
+    assert np.allclose(motion.speed, np.cos(times[5:-5] + 0.003), atol=1e-3)
+    assert np.isnan(motion.torque).all()
+
+
+def test_bad_messages_are_left_out_and_counted() -> None:
+    times = np.array([0.0, 0.01, 0.01, 0.02, 0.03])
+    rows = np.column_stack([[0.0, 0.01, 9.0, np.nan, 0.03], np.ones(5), np.zeros(5)])
+    track = MotionTrack()
+    assert track.extend(times, rows) == 2
+    assert track.at(np.array([0.02])).angle == pytest.approx(0.02)

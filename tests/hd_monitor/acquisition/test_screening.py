@@ -1,0 +1,56 @@
+"""Bad samples are found, counted and left out; good vibration passes untouched."""
+
+import numpy as np
+import pytest
+from hd_monitor.acquisition.screening import screen
+from hypothesis import given
+from hypothesis import strategies as st
+
+TIMES = np.arange(1000) * 1e-3
+
+
+@given(
+    frequency=st.floats(1.0, 330.0),
+    amplitude=st.floats(1e-6, 1e6),
+    noise=st.floats(0.0, 1.0),
+    seed=st.integers(0, 2**32),
+)
+def test_vibration_passes_untouched(frequency: float, amplitude: float, noise: float, seed: int) -> None:
+    values = np.sin(2 * np.pi * frequency * TIMES + 0.3) + np.random.default_rng(seed).normal(0.0, noise, TIMES.size)
+    screened = screen(amplitude * values)
+    assert np.array_equal(screened.values, amplitude * values)
+    assert screened[1:] == (0, 0, 0, 0)
+
+
+@given(places=st.sets(st.integers(2, 330), min_size=1, max_size=8), sign=st.sampled_from([-1.0, 1.0]))
+def test_spikes_are_found_and_nothing_else(places: set[int], sign: float) -> None:
+    values = np.sin(2 * np.pi * 56.0 * TIMES) + np.random.default_rng(1).normal(0.0, 0.1, TIMES.size)
+    where = 3 * np.array(sorted(places))
+    values[where] += sign * 20.0
+    screened = screen(values)
+    assert np.flatnonzero(np.isnan(screened.values)).tolist() == where.tolist()
+    assert screened.spikes == where.size
+
+
+def test_not_finite_values_are_left_out() -> None:
+    values = np.sin(2 * np.pi * 56.0 * TIMES)
+    values[[3, 500]] = np.nan, np.inf
+    screened = screen(values)
+    assert screened.not_finite == 2
+    assert np.flatnonzero(np.isnan(screened.values)).tolist() == [3, 500]
+
+
+@pytest.mark.parametrize("full_scale", [0.0, 0.8])
+def test_clipped_samples_are_left_out(full_scale: float) -> None:
+    values = np.clip(np.sin(2 * np.pi * 20.0 * TIMES), -0.8, 0.8)
+    at_stop = np.abs(values) == 0.8
+    screened = screen(values, full_scale=full_scale)
+    assert screened.clipped == at_stop.sum()
+    assert np.array_equal(np.isnan(screened.values), at_stop)
+
+
+def test_a_stuck_sensor_is_noticed_while_the_joint_turns_only() -> None:
+    values = np.sin(2 * np.pi * 56.0 * TIMES)
+    values[300:700] = values[300]
+    assert screen(values).stuck == 400
+    assert screen(values, turning=False).stuck == 0

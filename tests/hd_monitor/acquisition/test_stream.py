@@ -1,0 +1,65 @@
+"""Buffers hand out everything once, up to a time, and decide lateness and clock jumps by their own stamps."""
+
+import numpy as np
+from hd_monitor.acquisition.stream import CLOCK_JUMP, LATENESS, StampedBuffer
+from hypothesis import given
+from hypothesis import strategies as st
+
+MS = 1_000_000
+
+
+def buffer_of(stamps: list[int], chunk: int = 1000) -> StampedBuffer:
+    buffer = StampedBuffer(1)
+    for first in range(0, len(stamps), chunk):
+        part = np.array(stamps[first : first + chunk], dtype=np.int64)
+        buffer.add(part, part[:, None].astype(float))
+    return buffer
+
+
+@given(
+    steps=st.lists(st.integers(0, 40), min_size=1, max_size=60), chunk=st.integers(1, 60), until=st.integers(0, 2000)
+)
+def test_take_splits_once_and_for_all_however_it_was_fed(steps: list[int], chunk: int, until: int) -> None:
+    stamps = (np.cumsum(steps) * MS).tolist()
+    buffer = buffer_of(stamps, chunk)
+    early, late = buffer.take(until * MS), buffer.take(2**62)
+    assert early.stamps.tolist() == [s for s in stamps if s < until * MS]
+    assert late.stamps.tolist() == [s for s in stamps if s >= until * MS]
+    assert np.array_equal(early.values[:, 0], early.stamps)
+
+
+@given(
+    noise=st.lists(st.integers(-200, 200), min_size=2, max_size=80),
+    chunks=st.tuples(st.integers(1, 80), st.integers(1, 80)),
+)
+def test_what_is_late_does_not_depend_on_chunks(noise: list[int], chunks: tuple[int, int]) -> None:
+    stamps = [(20 * i + n + 1000) * MS for i, n in enumerate(noise)]
+    one, other = (buffer_of(stamps, chunk) for chunk in chunks)
+    assert (one.late, one.disordered, one.jumps) == (other.late, other.disordered, other.jumps)
+    assert one.take(2**62).stamps.tolist() == other.take(2**62).stamps.tolist()
+
+
+def test_a_sample_in_time_is_kept_and_a_late_one_dropped() -> None:
+    newest = 10 * LATENESS
+    buffer = buffer_of([newest, newest - LATENESS, newest - LATENESS - 1])
+    assert (buffer.disordered, buffer.late) == (1, 1)
+    assert buffer.take(2**62).stamps.size == 2
+
+
+@given(chunk=st.integers(1, 7))
+def test_a_clock_set_back_opens_a_new_time_base(chunk: int) -> None:
+    before, after = [9 * CLOCK_JUMP, 9 * CLOCK_JUMP + MS], [0, MS, 2 * MS]
+    buffer = buffer_of(before + after, chunk)
+    assert buffer.jumps == 1
+    assert buffer.jumped
+    assert buffer.take(2**62).stamps.tolist() == before
+    buffer.pass_jump()
+    assert not buffer.jumped
+    assert buffer.take(2**62).stamps.tolist() == after
+
+
+def test_the_earliest_sample_can_be_seen_without_taking_it() -> None:
+    buffer = buffer_of([30 * MS, 20 * MS, 40 * MS])
+    assert buffer.peek_first().stamps.tolist() == [20 * MS]
+    assert buffer.take(2**62).stamps.size == 3
+    assert buffer.peek_first().stamps.size == 0
