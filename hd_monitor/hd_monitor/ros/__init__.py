@@ -1,1 +1,1 @@
-"""The rclpy shell around the core."""
+"""The rclpy shell: parameters, drained subscriptions, publishers and the node around the core."""

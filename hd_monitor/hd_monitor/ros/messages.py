@@ -1,0 +1,55 @@
+"""From the core's results to ROS messages."""
+
+import array
+
+import numpy as np
+import numpy.typing as npt
+from builtin_interfaces.msg import Time
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from std_msgs.msg import Float64MultiArray, MultiArrayDimension, MultiArrayLayout
+
+from ..analysis.rms_curve import RmsCurve
+from ..analysis.zoom import ZoomSpectrum
+from ..contract import Dimension, rms_layout, zoom_layout
+from ..diagnosis.status import Status
+
+LEVELS = (DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR)
+"""By number; the message wants bytes and takes an int without complaint, which then is garbage on the wire."""
+
+
+def diagnostic_status(status: Status, name: str) -> DiagnosticStatus:
+    """Write a status as a message of the name given."""
+    return DiagnosticStatus(
+        level=LEVELS[status.level],
+        name=name,
+        message=status.message,
+        hardware_id=status.hardware_id,
+        values=[KeyValue(key=key, value=value) for key, value in status.values],
+    )
+
+
+def diagnostic_array(statuses: list[DiagnosticStatus], stamp: Time) -> DiagnosticArray:
+    """Bundle statuses."""
+    message = DiagnosticArray(status=statuses)
+    message.header.stamp = stamp
+    return message
+
+
+def zoom_message(zoom: ZoomSpectrum) -> Float64MultiArray:
+    """Write a zoom spectrum as [bin, (frequency Hz, amplitude rad/s²)]."""
+    table = np.column_stack((zoom.frequencies, zoom.amplitude))
+    return _multi_array(zoom_layout(len(table)), table)
+
+
+def rms_message(curve: RmsCurve) -> Float64MultiArray:
+    """Write an RMS curve as [speed bin, (rpm, RMS m/s², samples)]."""
+    table = np.asarray(curve.bins, dtype=np.float64).reshape(-1, 3)
+    return _multi_array(rms_layout(len(table)), table)
+
+
+def _multi_array(dimensions: tuple[Dimension, ...], table: npt.NDArray[np.float64]) -> Float64MultiArray:
+    layout = MultiArrayLayout(
+        dim=[MultiArrayDimension(label=d.label, size=d.size, stride=d.stride) for d in dimensions]
+    )
+    # By way of bytes: assigning an ndarray costs a hundred times more.
+    return Float64MultiArray(layout=layout, data=array.array("d", table.tobytes()))

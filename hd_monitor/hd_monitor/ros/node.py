@@ -1,0 +1,280 @@
+"""The node ``hd_monitor_node``: any number of joints, from their topics to /diagnostics."""
+
+import sys
+import traceback
+from collections.abc import Callable
+from functools import wraps
+from typing import Any
+
+import rclpy
+from diagnostic_msgs.msg import DiagnosticArray
+from rclpy.clock import Clock, ClockType
+from rclpy.exceptions import ParameterException
+from rclpy.executors import ExternalShutdownException
+from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
+from rclpy.logging import get_logger
+from rclpy.qos import QoSProfile
+from std_srvs.srv import Trigger
+
+from .. import contract
+from ..adapters import MOTION_SOURCE
+from ..diagnosis.status import Status
+from ..errors import HdMonitorError
+from ..settings import JointSettings
+from .joint_channel import JointChannel, queue_depth
+from .joint_watch import MOTION
+from .messages import diagnostic_array, diagnostic_status
+from .parameters import JointParameters
+from .subscriptions import DrainedSubscription
+
+NAME = "hd_monitor_node"
+DRAIN_PERIOD = 0.05
+"""Seconds between two looks into the queues: what a verdict may come late by."""
+STATUS_PERIOD = 1.0
+"""Seconds between two statuses (REP-107)."""
+UNUSABLE_INPUT = 2
+"""Exit status for parameters with which nothing can be watched."""
+
+SUCCESS = TransitionCallbackReturn.SUCCESS
+
+
+Transition = Callable[["HdMonitorNode", LifecycleState], TransitionCallbackReturn]
+
+
+def _logged(transition: Transition) -> Transition:
+    """Log an exception of a transition: the state machine of rclpy swallows it."""
+
+    @wraps(transition)
+    def logging(node: "HdMonitorNode", state: LifecycleState) -> TransitionCallbackReturn:
+        try:
+            return transition(node, state)
+        except Exception:
+            node.get_logger().error(traceback.format_exc())
+            raise
+
+    return logging
+
+
+class HdMonitorNode(LifecycleNode):
+    """Watches the reducers of the joints that its parameters name.
+
+    Configured, it has a monitor for every joint; active, it listens and publishes. Being deactivated keeps the
+    evidence, being cleaned up drops it.
+
+    Parameters
+    ----------
+    **options
+        Passed on to the base class: ``context``, ``namespace``, ``parameter_overrides`` …
+
+    Raises
+    ------
+    ParameterError, GeometryError
+        If a parameter is impossible; the message says which, why and what to do.
+    """
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(NAME, automatically_declare_parameters_from_overrides=True, **options)
+        self._steady = Clock(clock_type=ClockType.STEADY_TIME)
+        self._channels: list[JointChannel] = []
+        self._motion: DrainedSubscription | None = None
+        self._own_timers: list[Any] = []
+        self._own_services: list[Any] = []
+        self._logged: set[str] = set()
+        self._refusal: HdMonitorError | None = None
+        self._parameters_of_joints = JointParameters(self, self._change_limits)
+        self._diagnostics = self.create_lifecycle_publisher(DiagnosticArray, contract.DIAGNOSTICS, QoSProfile(depth=10))
+        if self.get_parameter("autostart").value:
+            self._bring_up()
+
+    def _bring_up(self) -> None:
+        if self.trigger_configure() != SUCCESS or self.trigger_activate() != SUCCESS:
+            raise self._refusal or HdMonitorError("the node could not be started; see the log above")
+
+    # Lifecycle ------------------------------------------------------------------------------------------------------
+
+    @_logged
+    def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Make a monitor for every joint, with its publishers and services."""
+        settings = self._parameters_of_joints.settings
+        several = len(settings) > 1
+        try:
+            for joint, own in settings.items():
+                self._channels.append(JointChannel(self, joint, own, several, self._now()))
+        except HdMonitorError as error:
+            self._refusal = error
+            self.get_logger().error(str(error))
+            self._dismantle()
+            return TransitionCallbackReturn.FAILURE
+        self._offer("~/reset_latch", "reset_latch", self._channels)
+        self._offer("~/reset", "reset", self._channels)
+        if several:
+            for channel in self._channels:
+                self._offer(f"~/{channel.joint}/reset_latch", "reset_latch", [channel])
+                self._offer(f"~/{channel.joint}/reset", "reset", [channel])
+        return super().on_configure(state)
+
+    @_logged
+    def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Subscribe, and start looking into the queues."""
+        settings = [channel.settings for channel in self._channels]
+        reliable = all(own["input.reliability"] == "reliable" for own in settings)
+        self._motion = DrainedSubscription(
+            self,
+            MOTION_SOURCE,
+            depth=max(map(queue_depth, settings)),
+            reliability="reliable" if reliable else "best_effort",
+        )
+        for channel in self._channels:
+            channel.open(self._now())
+        self._own_timers = [
+            self.create_timer(DRAIN_PERIOD, self._drain, clock=self._steady),
+            self.create_timer(STATUS_PERIOD, self._publish_all, clock=self._steady),
+        ]
+        self.get_logger().info(f"watching {', '.join(f'{c.joint} ({c.listens_to})' for c in self._channels)}")
+        return super().on_activate(state)
+
+    def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Leave the topics; the evidence stays."""
+        self._close()
+        return super().on_deactivate(state)
+
+    def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Drop the monitors."""
+        self._dismantle()
+        return super().on_cleanup(state)
+
+    def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Leave the topics and drop the monitors."""
+        self._close()
+        self._dismantle()
+        return super().on_shutdown(state)
+
+    def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Fall back to unconfigured after an error in a transition."""
+        self.get_logger().error(f"the transition from {state.label!r} failed: unconfigured now; see the log above")
+        return self.on_shutdown(state)
+
+    def _close(self) -> None:
+        for timer in self._own_timers:
+            self.destroy_timer(timer)
+        self._own_timers = []
+        for channel in self._channels:
+            channel.close()
+        if self._motion is not None:
+            self._motion.close()
+            self._motion = None
+
+    def _dismantle(self) -> None:
+        for service in self._own_services:
+            self.destroy_service(service)
+        self._own_services = []
+        for channel in self._channels:
+            channel.destroy()
+        self._channels = []
+
+    # Work -----------------------------------------------------------------------------------------------------------
+
+    def _drain(self) -> None:
+        if self._motion is None:
+            return
+        motion = self._motion.drain()
+        now = self._now()
+        for channel in self._channels:
+            channel.feed(motion, now, self._explain_motion)
+            if transitions := channel.watch.take_transitions():
+                for status in transitions:
+                    self._log_transition(channel, status)
+                self._publish([(channel, status) for status in transitions])
+            self._log_errors(channel)
+
+    def _publish_all(self) -> None:
+        now = self._now()
+        for channel in self._channels:
+            channel.check(now, self._explain_motion)
+            for status in channel.watch.take_transitions():
+                self._log_transition(channel, status)
+            self._log_errors(channel)
+        self._publish([(channel, channel.watch.status()) for channel in self._channels])
+
+    def _publish(self, statuses: list[tuple[JointChannel, Status]]) -> None:
+        """Publish statuses, several of one joint in several messages."""
+        while statuses:
+            seen: set[str] = set()
+            later, bundle = [], []
+            for channel, status in statuses:
+                if channel.joint in seen:
+                    later.append((channel, status))
+                    continue
+                seen.add(channel.joint)
+                name = f"{self.get_fully_qualified_name()}: {channel.joint} reducer"
+                bundle.append(diagnostic_status(status, name))
+            self._diagnostics.publish(diagnostic_array(bundle, self.get_clock().now().to_msg()))
+            statuses = later
+
+    def _now(self) -> int:
+        """Time by which silence counts [ns]: simulated where that is asked for, else one that nobody can set back."""
+        simulated = self.get_parameter("use_sim_time").value
+        return int((self.get_clock() if simulated else self._steady).now().nanoseconds)
+
+    def _explain_motion(self, name: str) -> str:
+        return self._motion.explain_silence() if name == MOTION and self._motion is not None else ""
+
+    def _log_transition(self, channel: JointChannel, status: Status) -> None:
+        logger = self.get_logger()
+        (logger.info, logger.warning, logger.error)[status.level](f"{channel.joint}: {status.message}")
+
+    def _log_errors(self, channel: JointChannel) -> None:
+        """Log a traceback the first time it appears."""
+        if channel.watch.last_error and channel.watch.last_error not in self._logged:
+            self._logged.add(channel.watch.last_error)
+            self.get_logger().error(f"{channel.joint}: {channel.watch.last_error}")
+
+    # Requests -------------------------------------------------------------------------------------------------------
+
+    def _change_limits(self, settings: dict[str, JointSettings]) -> None:
+        for channel in self._channels:
+            channel.change_limits(settings[channel.joint])
+
+    def _offer(self, name: str, action: str, channels: list[JointChannel]) -> None:
+        joints = ", ".join(channel.joint for channel in channels)
+
+        def act(request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+            try:
+                for channel in channels:
+                    getattr(channel.watch, action)()
+            except Exception as error:  # a request must not end the node
+                self.get_logger().error(f"{name} failed: {error!r}")
+                response.success, response.message = False, f"{type(error).__name__}: {error}"
+                return response
+            self.get_logger().info(f"{name} called: done for {joints}")
+            response.success, response.message = True, f"done for {joints}"
+            return response
+
+        self._own_services.append(self.create_service(Trigger, name, act))
+
+
+def main(args: list[str] | None = None) -> int:
+    """Run the node until it is interrupted; return 0, or 2 for parameters with which nothing can be watched."""
+    node = None
+    try:
+        rclpy.init(args=args)
+    except RuntimeError as error:  # a parameter file that cannot be read, or a malformed argument
+        get_logger(NAME).fatal(str(error))
+        return UNUSABLE_INPUT
+    try:
+        node = HdMonitorNode()
+        rclpy.spin(node)
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    except (HdMonitorError, ParameterException) as error:
+        get_logger(NAME).fatal(str(error))
+        return UNUSABLE_INPUT
+    finally:
+        if node is not None:
+            node.destroy_node()
+        rclpy.try_shutdown()
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,144 @@
+"""The settings as ROS parameters: declared with description, unit and range, checked by the core's own rules."""
+
+import math
+import re
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor, SetParametersResult
+from rclpy.node import Node
+from rclpy.parameter import Parameter as RosParameter
+
+from ..errors import HdMonitorError, ParameterError
+from ..parameter import Parameter
+from ..settings import NODE_PARAMETERS, PARAMETERS, JointSettings, split_joints
+
+JOINTS = "joints"
+JOINTS_DESCRIPTION = (
+    "names of the joints watched; with several, each has its topics below its name and may override any parameter "
+    "there (<joint>.reducer.serial); the values at the top level are common to all"
+)
+CHANGEABLE = "diagnosis."
+"""Parameters that begin so may be changed while the node runs; all others decide what it builds at its start."""
+
+_TOPIC_WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
+
+
+class JointParameters:
+    """The parameters of all joints, declared on a node.
+
+    Parameters
+    ----------
+    node : Node
+        Created with ``automatically_declare_parameters_from_overrides=True``, so that misspelt ones are noticed.
+    changed : callable
+        Called with the new settings of every joint after a change at run time.
+
+    Attributes
+    ----------
+    settings : dict of str to JointSettings
+        In force, by joint.
+
+    Raises
+    ------
+    ParameterError, GeometryError
+        If a parameter is unknown, of the wrong type, out of range or impossible beside the others.
+    """
+
+    def __init__(self, node: Node, changed: Callable[[dict[str, JointSettings]], None]) -> None:
+        self._node = node
+        self._changed = changed
+        given = self._values()
+        self.settings = split_joints(given)
+        joints = list(self.settings)
+        check_names(joints)
+        self._declare(JOINTS, joints, ParameterDescriptor(description=JOINTS_DESCRIPTION, read_only=True))
+        for parameter in NODE_PARAMETERS:
+            value = parameter.check(given.get(parameter.name, parameter.default))
+            self._declare(parameter.name, value, describe(parameter, read_only=True))
+        own = any(name.startswith(f"{joint}.") for name in given for joint in joints)
+        self._by_joint = len(joints) > 1 or own
+        common = split_joints({name: value for name, value in given.items() if not _below(name, joints)})[joints[0]]
+        for parameter in PARAMETERS:
+            fixed = self._by_joint or not parameter.name.startswith(CHANGEABLE)
+            self._declare(parameter.name, common[parameter.name], describe(parameter, read_only=fixed))
+        if self._by_joint:
+            for joint, settings in self.settings.items():
+                for parameter in PARAMETERS:
+                    fixed = not parameter.name.startswith(CHANGEABLE)
+                    name = f"{joint}.{parameter.name}"
+                    self._declare(name, settings[parameter.name], describe(parameter, read_only=fixed))
+        node.add_on_set_parameters_callback(self._check)
+        node.add_post_set_parameters_callback(self._apply)
+
+    def _values(self) -> dict[str, Any]:
+        return {name: self._node.get_parameter(name).value for name in self._node.list_parameters([], 0).names}
+
+    def _declare(self, name: str, value: Any, descriptor: ParameterDescriptor) -> None:
+        """Declare with a checked value what ROS may have declared already with the raw one."""
+        if self._node.has_parameter(name):
+            self._node.undeclare_parameter(name)
+        self._node.declare_parameter(name, value, descriptor, ignore_override=True)
+
+    def _with(self, parameters: Sequence[RosParameter]) -> dict[str, JointSettings]:
+        return split_joints(self._values() | {parameter.name: parameter.value for parameter in parameters})
+
+    def _check(self, parameters: Sequence[RosParameter]) -> SetParametersResult:
+        try:
+            self._with(parameters)
+        except HdMonitorError as error:
+            return SetParametersResult(successful=False, reason=str(error))
+        return SetParametersResult(successful=True)
+
+    def _apply(self, parameters: Sequence[RosParameter]) -> None:
+        settings = self._with(parameters)
+        if settings != self.settings:
+            self.settings = settings
+            self._changed(settings)
+
+
+def describe(parameter: Parameter, *, read_only: bool) -> ParameterDescriptor:
+    """Write a parameter's description, unit, range and words as a ROS descriptor."""
+    unit = f" [{parameter.unit}]" if parameter.unit else ""
+    descriptor = ParameterDescriptor(
+        description=f"{parameter.description}{unit}",
+        read_only=read_only,
+        additional_constraints=f"one of: {', '.join(parameter.choices)}" if parameter.choices else "",
+    )
+    if math.isfinite(parameter.low) and math.isfinite(parameter.high):
+        if isinstance(parameter.default, float):
+            bounds = FloatingPointRange(from_value=float(parameter.low), to_value=float(parameter.high))
+            descriptor.floating_point_range = [bounds]
+        elif isinstance(parameter.default, int) and not isinstance(parameter.default, bool):
+            descriptor.integer_range = [IntegerRange(from_value=int(parameter.low), to_value=int(parameter.high))]
+    return descriptor
+
+
+def check_names(joints: Sequence[str]) -> None:
+    """Refuse joint names that cannot stand before a parameter or, with several joints, in a topic's name.
+
+    Raises
+    ------
+    ParameterError
+        If a name is empty, is the first word of a parameter or, with several joints, holds anything but letters,
+        digits and underscores; the message says the way out.
+    """
+    groups = {parameter.name.partition(".")[0] for parameter in PARAMETERS}
+    for joint in joints:
+        word = re.sub(r"[^A-Za-z0-9]+", "_", joint).strip("_") or "joint"
+        if word in groups:
+            word = f"{word}_joint"
+        if joint in groups or not joint:
+            trouble = "which cannot stand before a parameter's name"
+        elif len(joints) > 1 and not _TOPIC_WORD.fullmatch(joint):
+            trouble = "which cannot be part of a topic's name"
+        else:
+            continue
+        raise ParameterError(
+            f"joints has {joint!r}, {trouble}; call it {word!r} there and put the name that joint_states uses into "
+            f"{word}.input.joint_name"
+        )
+
+
+def _below(name: str, joints: Sequence[str]) -> bool:
+    return any(name.startswith(f"{joint}.") for joint in joints)

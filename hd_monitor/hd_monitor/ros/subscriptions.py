@@ -1,0 +1,112 @@
+"""Subscriptions that are polled: an executor's wait set costs far more than a small message.
+
+An executor spends more than half a millisecond of CPU on waking up for one message, so a topic of a thousand a second
+eats most of a core. Here the subscription never enters the wait set; its queue, seconds deep, is emptied from a timer
+for a few microseconds a message, and the messages stay serialised until numpy decodes them all at once.
+"""
+
+from importlib import import_module
+from typing import Any
+
+from rclpy.callback_groups import CallbackGroup
+from rclpy.node import Node
+from rclpy.qos import QoSCompatibility, QoSHistoryPolicy, QoSProfile, QoSReliabilityPolicy, qos_check_compatible
+
+from ..adapters import Source
+
+RELIABILITIES = {
+    "reliable": QoSReliabilityPolicy.RELIABLE,
+    "best_effort": QoSReliabilityPolicy.BEST_EFFORT,
+}
+
+
+class PolledGroup(CallbackGroup):
+    """A callback group whose members no executor waits for."""
+
+    def can_execute(self, entity: Any) -> bool:
+        """Keep the entity out of every wait set."""
+        return False
+
+    def beginning_execution(self, entity: Any) -> bool:
+        """Refuse: nothing of this group is executed."""
+        return False
+
+    def ending_execution(self, entity: Any) -> None:
+        """Nothing to do: nothing of this group is executed."""
+
+
+class DrainedSubscription:
+    """A subscription that hands over its queue of serialised messages when asked.
+
+    Parameters
+    ----------
+    node : Node
+    source : Source
+        Topic, relative to the node's namespace, and message type.
+    depth : int
+        Messages that may wait in the queue.
+    reliability : str
+        ``'reliable'`` or ``'best_effort'``.
+    """
+
+    def __init__(self, node: Node, source: Source, *, depth: int, reliability: str) -> None:
+        self._node = node
+        package, _, name = source.type.partition("/")
+        self._type = getattr(import_module(f"{package}.msg"), name)
+        self._depth = depth
+        self._qos = QoSProfile(history=QoSHistoryPolicy.KEEP_LAST, depth=depth, reliability=RELIABILITIES[reliability])
+        self._subscription = node.create_subscription(
+            self._type, source.topic, _never, self._qos, callback_group=PolledGroup(), raw=True
+        )
+        self._type_name = f"{package}/msg/{name}"
+        self.topic: str = self._subscription.topic_name
+
+    def drain(self) -> list[bytes]:
+        """Take what is in the queue, at most one queue's depth at a time."""
+        messages: list[bytes] = []
+        handle = self._subscription.handle
+        with handle:
+            take, kind = handle.take_message, self._type
+            while len(messages) < self._depth and (taken := take(kind, True)) is not None:
+                messages.append(taken[0])
+        return messages
+
+    def close(self) -> None:
+        """Leave the topic."""
+        self._node.destroy_subscription(self._subscription)
+
+    def explain_silence(self) -> str:
+        """Say, from the ROS graph, why nothing comes."""
+        publishers = self._node.get_publishers_info_by_topic(self.topic)
+        if not publishers:
+            return f"nothing publishes {self.topic} ({self._type_name}){self._namesakes()}"
+        of_type = [publisher for publisher in publishers if publisher.topic_type == self._type_name]
+        if not of_type:
+            return (
+                f"{_name(publishers[0])} publishes {self.topic} as {publishers[0].topic_type}, "
+                f"but {self._type_name} is expected"
+            )
+        for publisher in of_type:
+            compatibility, _ = qos_check_compatible(publisher.qos_profile, self._qos)
+            if compatibility != QoSCompatibility.ERROR:
+                return f"{_name(publisher)} publishes {self.topic} but sends nothing"
+        if of_type[0].qos_profile.reliability == QoSReliabilityPolicy.BEST_EFFORT:
+            return f"{_name(of_type[0])} publishes {self.topic} best-effort: set input.reliability to best_effort"
+        return f"{_name(of_type[0])} publishes {self.topic} with an incompatible QoS"
+
+    def _namesakes(self) -> str:
+        """Name a topic of the same type and last name that does have a publisher: a namespace may be wrong."""
+        last = self.topic.rpartition("/")[2]
+        for topic, types in self._node.get_topic_names_and_types():
+            alike = topic != self.topic and topic.rpartition("/")[2] == last and self._type_name in types
+            if alike and self._node.count_publishers(topic):
+                return f", but {topic} exists: is the namespace or a remapping wrong?"
+        return ""
+
+
+def _name(endpoint: Any) -> str:
+    return f"{endpoint.node_namespace.rstrip('/')}/{endpoint.node_name}"
+
+
+def _never(message: Any) -> None:
+    """Stand in for the callback that a subscription must have; the group keeps it from being called."""
