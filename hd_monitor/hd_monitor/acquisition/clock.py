@@ -5,7 +5,10 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-_JITTERY = 0.2  # of a period: from here on single differences of stamps no longer tell how many samples are missing
+_EVEN = 0.02  # of a period: single differences of stamps as even as this count the missing samples without fail
+_DISORDERED = 0.2  # of a period: sorted stamps more uneven than this were not sampled in that order
+_SHARP = 0.17  # of a period: stamps nearer to the grid than this tell their own place; mere rounding leaves 0.29
+_REFINEMENTS = 4
 _SMOOTHING = 20  # samples over which heavy jitter is averaged before missing samples are counted
 _DRIFT = 2e-3  # relative error of the first guess of the period under heavy jitter, at most
 
@@ -63,29 +66,39 @@ def recover_clock(times: npt.NDArray[np.float64], period: float | None = None) -
     steps = np.diff(t)
     if steps.min() < 0.0:
         by_stamp = np.argsort(t, kind="stable")
-        if _unevenness(np.diff(t[by_stamp])) <= _JITTERY:
+        if _unevenness(np.diff(t[by_stamp])) <= _DISORDERED:
             order, t = order[by_stamp], t[by_stamp]
             steps = np.diff(t)
     typical = period or float(np.median(steps))
+    if typical <= 0.0:
+        return None
     uneven = _unevenness(steps)
-    if typical <= 0.0 or uneven > _JITTERY:
-        span = min(_SMOOTHING, max(1, t.size // 4))
-        typical = period or float(np.median(t[span:] - t[:-span])) / span
-        if typical <= 0.0:
-            return None
-        number = _count_through_jitter(t, typical, exact=period is not None)
-    else:
-        number = np.concatenate([[0], np.cumsum(np.maximum(np.rint(steps / typical).astype(np.int64), 1))])
-    start, fitted = _line(number, t)
-    if uneven <= _JITTERY and number[-1] >= number.size:  # the first guess of the period can miscount long holes
-        number = np.maximum.accumulate(np.rint((t - start) / fitted).astype(np.int64))
-        number = number - number[0]
-        fresh = np.concatenate([[True], np.diff(number) > 0])
-        if not fresh.all():
-            number = np.concatenate([[0], np.cumsum(np.maximum(np.rint(steps / fitted).astype(np.int64), 1))])
+    number = np.concatenate([[0], np.cumsum(np.maximum(np.rint(steps / typical).astype(np.int64), 1))])
+    if uneven > _EVEN:
+        # With a line known, each stamp tells its own place, more sharply than a difference of two stamps does
+        number = _settle(number, t)
         start, fitted = _line(number, t)
+        if float(np.std(t - start - fitted * number)) > _SHARP * fitted:
+            span = min(_SMOOTHING, max(1, t.size // 4))
+            typical = period or float(np.median(t[span:] - t[:-span])) / span
+            number = _count_through_jitter(t, typical, exact=period is not None)
+    start, fitted = _line(number, t)
     jitter = float(np.sqrt(np.mean((t - start - fitted * number) ** 2)))
     return Clock(order, number, start, fitted, jitter, duplicates)
+
+
+def _settle(number: npt.NDArray[np.int64], t: npt.NDArray[np.float64]) -> npt.NDArray[np.int64]:
+    """Renumber stamps by the line through them until nothing changes."""
+    for _ in range(_REFINEMENTS):
+        slope = float(np.median(np.diff(t) / np.diff(number)))
+        middle = float(np.median(t - slope * number))
+        start, fitted = _line(number, t) if np.ptp(t - middle - slope * number) < slope else (middle, slope)
+        places = np.rint((t - start) / fitted).astype(np.int64)
+        places -= places[0]
+        if np.array_equal(places, number) or (np.diff(places) < 1).any():
+            break
+        number = places
+    return number
 
 
 def _without_duplicates(times: npt.NDArray[np.float64]) -> tuple[npt.NDArray[np.intp], int]:

@@ -6,10 +6,15 @@ import numpy as np
 import numpy.typing as npt
 from scipy.interpolate import CubicHermiteSpline
 
+from .clock import recover_clock
+
 FloatArray = npt.NDArray[np.float64]
 
 _LARGEST_HOLE = 0.25  # s; a joint can change its speed within that in ways that no interpolation knows
 _HOLE_PERIODS = 5.0
+_FEWEST_TO_EVEN = 16  # messages
+_JITTER_NOTICED = 20e-6  # s
+_CLEARLY_BETTER = 0.5  # of the squared contradiction between position and velocity
 
 
 class Motion(NamedTuple):
@@ -18,6 +23,39 @@ class Motion(NamedTuple):
     angle: FloatArray
     speed: FloatArray
     torque: FloatArray
+
+
+def even_stamps(times: FloatArray, rows: FloatArray) -> FloatArray:
+    """Take jitter off the stamps of joint states, where the joint's own motion proves that it is jitter.
+
+    Drivers sample evenly but often stamp in passing. Position and velocity tell which of the two clocks is true: the
+    one on which the position moves as the velocity says. At 3000 rpm a jitter of 1 ms would shift the lines' phase by
+    half a radian.
+
+    Parameters
+    ----------
+    times : ndarray, shape (N,)
+        Stamps [s], increasing.
+    rows : ndarray, shape (N, 3)
+        Position [rad], velocity [rad/s], effort [N·m].
+
+    Returns
+    -------
+    ndarray, shape (N,)
+        Evened times [s], or `times` where evening them does not explain the motion clearly better.
+    """
+    if times.size < _FEWEST_TO_EVEN or not np.isfinite(rows[:, :2]).all():
+        return times
+    clock = recover_clock(times)
+    if clock is None or clock.order.size != times.size or clock.jitter < _JITTER_NOTICED:
+        return times
+    even: FloatArray = np.asarray(clock.start + clock.period * clock.number, dtype=np.float64)
+    if clock.jitter > 0.5 * clock.period or not np.array_equal(clock.order, np.arange(times.size)):
+        return times
+    moved, velocity = np.diff(np.unwrap(rows[:, 0])), rows[:, 1]
+    mean = 0.5 * (velocity[1:] + velocity[:-1])
+    as_stamped, as_evened = (float(np.sum((moved - mean * np.diff(t)) ** 2)) for t in (times, even))
+    return even if as_evened < _CLEARLY_BETTER * as_stamped else times
 
 
 class MotionTrack:

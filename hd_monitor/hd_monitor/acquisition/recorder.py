@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from ..settings import JointSettings
 from .clock import recover_clock
-from .motion import MotionTrack
+from .motion import MotionTrack, even_stamps
 from .quality import Quality
 from .record import JointSamples, Record
 from .screening import screen
@@ -109,7 +109,7 @@ class Recorder:
             order = np.argsort(stamps, kind="stable")
             stamps, rows = stamps[order], rows[order]
         times = _seconds(stamps, epoch)
-        dropped = self._track.extend(times, rows)
+        dropped = self._track.extend(even_stamps(times, rows), rows)
         fault = "joint states without a finite position or with repeated stamps were left out" if dropped else ""
         self.count(motion_messages=int(stamps.size) - dropped, motion_faults=dropped)
         if fault:

@@ -22,7 +22,7 @@ def test_even_stamps_give_themselves() -> None:
     assert clock.jitter < 1e-12
 
 
-@given(seed=st.integers(0, 2**32), jitter=st.floats(0.0, 0.1), lost=st.sets(st.integers(1, 398), max_size=40))
+@given(seed=st.integers(0, 2**32), jitter=st.floats(0.0, 0.07), lost=st.sets(st.integers(1, 398), max_size=40))
 def test_missing_samples_leave_their_places_empty(seed: int, jitter: float, lost: set[int]) -> None:
     kept = np.array(sorted(set(range(400)) - lost))
     clock = recover_clock(even(400, seed, jitter * PERIOD)[kept])
@@ -32,7 +32,7 @@ def test_missing_samples_leave_their_places_empty(seed: int, jitter: float, lost
 
 @given(seed=st.integers(0, 2**32))
 def test_heavy_jitter_averages_out(seed: int) -> None:
-    count, jitter = 1000, 0.5 * PERIOD
+    count, jitter = 1000, 0.4 * PERIOD
     clock = recover_clock(even(count, seed, jitter))
     assert clock is not None
     assert np.array_equal(clock.order, np.arange(count))

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hd_monitor.acquisition.motion import MotionTrack
+from hd_monitor.acquisition.motion import MotionTrack, even_stamps
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -56,3 +56,22 @@ def test_bad_messages_are_left_out_and_counted() -> None:
     track = MotionTrack()
     assert track.extend(times, rows) == 2
     assert track.at(np.array([0.02])).angle == pytest.approx(0.02)
+
+
+def moving(times: np.ndarray) -> np.ndarray:
+    return np.column_stack([np.sin(times), np.cos(times), np.zeros_like(times)])
+
+
+@given(seed=st.integers(0, 2**32), jitter=st.floats(1e-4, 1.5e-3))
+def test_jitter_of_stamps_is_taken_off(seed: int, jitter: float) -> None:
+    sampled = np.arange(100) * 0.01
+    stamped = np.sort(sampled + np.random.default_rng(seed).normal(0.0, jitter, 100))
+    evened = even_stamps(stamped, moving(sampled))
+    # what is left is the error of a line fitted to the stamps: at most 2 sigma / sqrt(N) at its ends; five of them
+    assert np.abs(evened - sampled).max() < 5 * 2 * jitter / np.sqrt(100)
+
+
+@given(seed=st.integers(0, 2**32), unevenness=st.floats(1e-4, 3e-3))
+def test_truly_uneven_sampling_keeps_its_stamps(seed: int, unevenness: float) -> None:
+    sampled = np.sort(np.arange(100) * 0.01 + np.random.default_rng(seed).normal(0.0, unevenness, 100))
+    assert np.array_equal(even_stamps(sampled, moving(sampled)), sampled)
