@@ -8,6 +8,7 @@ import numpy.typing as npt
 _EVEN = 0.02  # of a period: single differences of stamps as even as this count the missing samples without fail
 _DISORDERED = 0.2  # of a period: sorted stamps more uneven than this were not sampled in that order
 _SHARP = 0.17  # of a period: stamps nearer to the grid than this tell their own place; mere rounding leaves 0.29
+_OUT_OF_PLACE = 0.55  # of a period: a stamp further from its place belongs to another one
 _REFINEMENTS = 4
 _SMOOTHING = 20  # samples over which heavy jitter is averaged before missing samples are counted
 _DRIFT = 2e-3  # relative error of the first guess of the period under heavy jitter, at most
@@ -78,7 +79,8 @@ def recover_clock(times: npt.NDArray[np.float64], period: float | None = None) -
         # With a line known, each stamp tells its own place, more sharply than a difference of two stamps does
         number = _settle(number, t)
         start, fitted = _line(number, t)
-        if float(np.std(t - start - fitted * number)) > _SHARP * fitted:
+        apart = np.abs(t - start - fitted * number) / fitted
+        if float(np.sqrt(np.mean(apart * apart))) > _SHARP or float(apart.max()) > _OUT_OF_PLACE:
             span = min(_SMOOTHING, max(1, t.size // 4))
             typical = period or float(np.median(t[span:] - t[:-span])) / span
             number = _count_through_jitter(t, typical, exact=period is not None)
