@@ -313,6 +313,27 @@ def _is_of_the_node(name: str) -> bool:
     return name in _NO_JOINT_NAMES or name.startswith("qos_overrides.")
 
 
+_OWN_GROUPS = ("reducer", "dynamics", "input", "analysis", "diagnosis")
+
+
+def set_aside_foreign(given: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:
+    """Part a parameter file that is shared with other nodes: (the monitor's parameters, names of the others').
+
+    What stands below a joint or in a group that is the monitor's alone is never foreign, so that a misspelt name is
+    still refused by :func:`split_joints`.
+    """
+    flat = flatten(given)
+    joints = flat.get("joints") or ["joint"]
+    own = {*_OWN_GROUPS, *([joints] if isinstance(joints, str) else joints)}
+
+    def foreign(name: str) -> bool:
+        known = name in _BY_NAME or name == "joints" or _is_of_the_node(name)
+        return not known and not any(name.startswith(f"{group}.") for group in own)
+
+    strangers = sorted(name for name in flat if foreign(name))
+    return {name: value for name, value in flat.items() if name not in strangers}, strangers
+
+
 def split_joints(given: Mapping[str, Any]) -> dict[str, JointSettings]:
     """Settings of every joint in a node's parameters.
 

@@ -12,6 +12,7 @@ from ..assessment import Assessment
 from ..contract import NANOSECONDS, Block
 from ..diagnosis.status import Status, status_of
 from ..diagnosis.verdict import Component, FaultCode, Level, Verdict
+from ..errors import HdMonitorError
 from ..monitor import Monitor
 from ..settings import JointSettings
 
@@ -142,9 +143,7 @@ class JointWatch:
             if not useless:
                 return
             reasons = [self._complain(name, now, explain) for name in useless]
-            silent = any(now - self._heard[name].arrived >= self._timeout for name in useless)
-            code = FaultCode.INPUT_LOST if silent else FaultCode.INPUT_INVALID
-            self._show(self._other(now, Level.ERROR, code, _sentence("; ".join(reasons))))
+            self._show(self._other(now, Level.ERROR, self._code(useless, now), _sentence("; ".join(reasons))))
         except Exception as error:
             self._fail(error, now)
 
@@ -158,9 +157,11 @@ class JointWatch:
         return transitions
 
     def zoom(self) -> ZoomSpectrum | None:
-        """Zoom spectrum of the present assessment."""
+        """Zoom spectrum of the present assessment, where there is one to show."""
         try:
             return self.present.zoom
+        except HdMonitorError:  # the stretch holds no number, say: no picture, but no reason to start afresh
+            return None
         except Exception as error:
             self._fail(error, self.present.stamp)
             return None
@@ -207,7 +208,9 @@ class JointWatch:
         """Add to a lost input what the monitor, which sees stamps only, cannot know."""
         if assessment.verdict.fault_code is not FaultCode.INPUT_LOST:
             return assessment
-        reasons = [self._complain(name, now, explain) for name in self._useless(now)]
+        useless = self._useless(now)
+        reasons = [self._complain(name, now, explain) for name in useless]
+        code = self._code(useless, now) if useless else FaultCode.INPUT_LOST
         stamps = [heard.stamp for heard in self._heard.values()]
         if not reasons and len(stamps) == 2 and stamps[0] is not None and stamps[1] is not None:
             apart = abs(stamps[0] - stamps[1])
@@ -218,7 +221,12 @@ class JointWatch:
                 ]
         if not reasons:
             return assessment
-        return replace(assessment, verdict=replace(assessment.verdict, reason=_sentence("; ".join(reasons))))
+        verdict = replace(assessment.verdict, fault_code=code, reason=_sentence("; ".join(reasons)))
+        return replace(assessment, verdict=verdict)
+
+    def _code(self, useless: list[str], now: int) -> FaultCode:
+        silent = any(now - self._heard[name].arrived >= self._timeout for name in useless)
+        return FaultCode.INPUT_LOST if silent else FaultCode.INPUT_INVALID
 
     def _other(self, now: int, level: Level, code: FaultCode, reason: str) -> Assessment:
         """Make an assessment that the monitor knows nothing of, with all that it knows."""

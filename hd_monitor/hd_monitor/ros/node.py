@@ -19,6 +19,7 @@ from std_srvs.srv import Trigger
 from .. import contract
 from ..adapters import MOTION_SOURCE
 from ..diagnosis.status import Status
+from ..diagnosis.verdict import Level
 from ..errors import HdMonitorError
 from ..settings import JointSettings
 from .joint_channel import JointChannel, queue_depth
@@ -220,8 +221,14 @@ class HdMonitorNode(LifecycleNode):
         return self._motion.explain_silence() if name == MOTION and self._motion is not None else ""
 
     def _log_transition(self, channel: JointChannel, status: Status) -> None:
-        logger = self.get_logger()
-        (logger.info, logger.warning, logger.error)[status.level](f"{channel.joint}: {status.message}")
+        text = f"{channel.joint}: {status.message}"
+        # A logger's line of code keeps its severity: one call for all three would raise.
+        if status.level == Level.OK:
+            self.get_logger().info(text)
+        elif status.level == Level.WARN:
+            self.get_logger().warning(text)
+        else:
+            self.get_logger().error(text)
 
     def _log_errors(self, channel: JointChannel) -> None:
         """Log a traceback the first time it appears."""

@@ -11,7 +11,7 @@ from rclpy.parameter import Parameter as RosParameter
 
 from ..errors import HdMonitorError, ParameterError
 from ..parameter import Parameter
-from ..settings import NODE_PARAMETERS, PARAMETERS, JointSettings, split_joints
+from ..settings import NODE_PARAMETERS, PARAMETERS, JointSettings, set_aside_foreign, split_joints
 
 JOINTS = "joints"
 JOINTS_DESCRIPTION = (
@@ -48,7 +48,14 @@ class JointParameters:
     def __init__(self, node: Node, changed: Callable[[dict[str, JointSettings]], None]) -> None:
         self._node = node
         self._changed = changed
-        given = self._values()
+        given, strangers = set_aside_foreign(self._values())
+        for name in strangers:
+            node.undeclare_parameter(name)
+        if strangers:
+            node.get_logger().warning(
+                f"ignoring {', '.join(strangers)}: no parameters of this node; right if the file is shared with others, "
+                "else check the spelling"
+            )
         self.settings = split_joints(given)
         joints = list(self.settings)
         check_names(joints)
