@@ -1,0 +1,60 @@
+"""From β phasors to the two splines' indexes, with the bias that noise brings removed and their joint uncertainty."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from ..reducer import LinePair
+from .unknowns import Unknowns
+
+FloatArray = npt.NDArray[np.float64]
+
+
+class Indexes(NamedTuple):
+    """Root-sum-square β of both splines, their standard deviations and the correlation of the two."""
+
+    index: LinePair
+    std: LinePair
+    correlation: float
+
+
+def stiffness_indexes(unknowns: Unknowns, values: FloatArray, covariance: FloatArray) -> Indexes:
+    """Indexes of Gaussian β.
+
+    Parameters
+    ----------
+    unknowns : Unknowns
+    values : ndarray, shape (unknowns,)
+    covariance : ndarray, shape (unknowns, unknowns)
+
+    Returns
+    -------
+    Indexes
+
+    Notes
+    -----
+    For an estimate z of β with covariance C, ``|z|² - tr C`` estimates |β|² without bias, and
+    ``4 z·C z - 2 tr C²`` the variance of that. The index is its root, 0 where it is negative. Its standard deviation
+    is the usual one far from zero; near zero it is taken such that the index plus its standard deviation is the root
+    of |β|² plus *its* standard deviation.
+    """
+    parts = unknowns.circular_spline, unknowns.flexspline
+    z = [values[part] for part in parts]
+    c = [[covariance[a, b] for b in parts] for a in parts]
+    index, std, spread = [], [], []
+    for i in range(2):
+        own = c[i][i]
+        square = max(float(z[i] @ z[i]) - float(np.trace(own)), 0.0)
+        noise = 2.0 * float(np.sum(own * own))
+        variance = max(4.0 * float(z[i] @ own @ z[i]) - noise, noise)
+        root, deviation = math.sqrt(square), math.sqrt(variance)
+        index.append(root)
+        spread.append(deviation)
+        # 2 root std + std² = deviation has this solution; it tends to deviation / (2 root)
+        std.append(deviation / (root + math.sqrt(square + deviation)) if deviation > 0.0 else 0.0)
+    product = spread[0] * spread[1]
+    joint = 4.0 * float(z[0] @ c[0][1] @ z[1])
+    correlation = float(np.clip(joint / product, -1.0, 1.0)) if product > 0.0 else 0.0
+    return Indexes(LinePair(*index), LinePair(*std), correlation)

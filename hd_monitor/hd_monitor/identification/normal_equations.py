@@ -1,0 +1,86 @@
+"""Evidence as normal equations: what a stretch says about the unknowns around a point, in sums that add up."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from .linearisation import Linearisation, Predictor
+from .noise_floor import NoiseFloor, Spectral
+from .stretch import Stretch
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class NormalEquations:
+    """Quadratic model of the cost, ``cost - 2 gradient·d + d·information·d``, for a step d of the unknowns.
+
+    Attributes
+    ----------
+    information : ndarray, shape (unknowns, unknowns)
+        Fisher information.
+    gradient : ndarray, shape (unknowns,)
+    cost : float
+        Sum of squares of the residual in units of the noise floor.
+    freedom : float
+        Expectation of the cost if the residual is nothing but noise.
+    """
+
+    information: FloatArray
+    gradient: FloatArray
+    cost: float
+    freedom: float
+
+    def __add__(self, other: "NormalEquations") -> "NormalEquations":
+        """Pool two pieces of evidence about the same point."""
+        return NormalEquations(
+            information=self.information + other.information,
+            gradient=self.gradient + other.gradient,
+            cost=self.cost + other.cost,
+            freedom=self.freedom + other.freedom,
+        )
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Evidence:
+    """What one stretch says at one point: the normal equations and the residual behind them.
+
+    Attributes
+    ----------
+    equations : NormalEquations
+    linearisation : Linearisation
+    spectral : Spectral
+    residual : ndarray, shape (2 * bins,)
+        Transform of the residual, free vibrations taken off, not weighted.
+    """
+
+    equations: NormalEquations
+    linearisation: Linearisation
+    spectral: Spectral
+    residual: FloatArray
+
+
+def examine(
+    stretch: Stretch, spectral: Spectral, predictor: Predictor, values: FloatArray, floor: NoiseFloor
+) -> Evidence:
+    """Linearise a stretch at `values` and weight it by the noise floor."""
+    line = predictor.linearise(stretch, values)
+    columns = spectral(np.concatenate([line.residual[:, None], line.free, line.jacobian], axis=1))
+    std = np.sqrt(np.tile(floor.density(spectral.frequencies), 2))
+    white = columns / std[:, None]
+    free, _ = np.linalg.qr(white[:, 1:3])
+    white = np.delete(white, (1, 2), axis=1)
+    white -= free @ (free.T @ white)
+    gram = white.T @ white
+    return Evidence(
+        equations=NormalEquations(
+            information=gram[1:, 1:],
+            gradient=gram[1:, 0],
+            cost=float(gram[0, 0]),
+            freedom=2.0 * spectral.frequencies.size * spectral.fill - 2.0,
+        ),
+        linearisation=line,
+        spectral=spectral,
+        residual=white[:, 0] * std,
+    )
