@@ -4,8 +4,9 @@ import math
 from dataclasses import dataclass
 
 from .acquisition.quality import Quality
-from .acquisition.record import Record
+from .acquisition.record import JointSamples, Record
 from .analysis.rms_curve import RmsCurve
+from .analysis.steady import join
 from .analysis.zoom import ZoomSpectrum, zoom_spectrum
 from .diagnosis.verdict import Verdict
 from .identification.result import Identification
@@ -23,8 +24,8 @@ class Assessment:
     verdict : Verdict
     identification : Identification or None
         None as long as nothing could be identified.
-    steady : Record or None
-        The newest stretch at an almost constant speed; None while the joint does not turn steadily.
+    steady_parts : tuple of Record
+        The newest stretch at an almost constant speed, in pieces; none while the joint does not turn steadily.
     reducer : Reducer
     rms_curve : RmsCurve
     quality : Quality
@@ -37,6 +38,10 @@ class Assessment:
         Output travel [rad] after which the first pair's lines separate by Fourier means (Hann window).
     warn_limit, error_limit : float
         Limits on the indexes in force, fractions.
+    records : tuple of Record
+        The vibration of the last period with its motion.
+    joint_samples : JointSamples or None
+        The joint states of the last period; None if it had none.
     extra : tuple of (str, str)
         Further keys and values for the status.
     """
@@ -44,7 +49,7 @@ class Assessment:
     stamp: int
     verdict: Verdict
     identification: Identification | None
-    steady: Record | None
+    steady_parts: tuple[Record, ...]
     reducer: Reducer
     rms_curve: RmsCurve
     quality: Quality
@@ -53,7 +58,14 @@ class Assessment:
     travel_needed: float
     warn_limit: float
     error_limit: float
+    records: tuple[Record, ...] = ()
+    joint_samples: JointSamples | None = None
     extra: tuple[tuple[str, str], ...] = ()
+
+    @property
+    def steady(self) -> Record | None:
+        """The newest stretch at an almost constant speed; None while the joint does not turn steadily."""
+        return join(self.steady_parts)
 
     @property
     def strongest_pair(self) -> int:
