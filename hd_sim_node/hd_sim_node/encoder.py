@@ -1,0 +1,117 @@
+"""The virtual joint: position, velocity and effort as a robot's driver reports them, at a rate of their own."""
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from .programme import FloatArray
+from .randomness import generator
+from .rig import Rig, RigChunk
+from .sensor import IntArray, nanoseconds
+
+EFFORTS = ("transmitted", "mean", "reaction", "none")
+SIDES = ("motor", "output")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class JointSettings:
+    """What the joint reports.
+
+    Parameters
+    ----------
+    rate : float
+        Messages per second [Hz].
+    side : str
+        ``motor``: the motor's encoder divided by the reduction; ``output``: an encoder behind the reducer, which sees
+        the torsional vibration.
+    reversed : bool
+        Whether the joint counts against the wave generator's sense of rotation.
+    resolution : float
+        Step of the position [rad]; 0: continuous.
+    velocity : bool
+        Whether velocities are reported.
+    velocity_noise : float
+        Standard deviation [rad/s].
+    effort : str
+        ``transmitted``: the torque on the output without the drive's ripple; ``mean``: its mean parameter;
+        ``reaction``: what the reducer transmits, vibration included; ``none``.
+    effort_noise : float
+        Standard deviation [N·m].
+    jitter : float
+        Standard deviation of the stamps [s].
+    """
+
+    rate: float = 100.0
+    side: str = "motor"
+    reversed: bool = False
+    resolution: float = 0.0
+    velocity: bool = True
+    velocity_noise: float = 0.0
+    effort: str = "transmitted"
+    effort_noise: float = 0.0
+    jitter: float = 0.0
+
+
+class JointBatch(NamedTuple):
+    """Joint states, one row a message; None where the joint does not report the quantity."""
+
+    times: FloatArray
+    """Instants [s] since the start, shape (messages,)."""
+    stamps: IntArray
+    """[ns] since the start."""
+    position: FloatArray
+    """[rad]"""
+    velocity: FloatArray | None
+    """[rad/s]"""
+    effort: FloatArray | None
+    """[N·m]"""
+
+    def __len__(self) -> int:
+        """Return the number of messages, not of fields."""
+        return int(self.times.size)
+
+
+class Joint:
+    """Turns the rig's motion into joint states.
+
+    Parameters
+    ----------
+    rig : Rig
+    settings : JointSettings
+    seed : int
+    """
+
+    def __init__(self, rig: Rig, settings: JointSettings, *, seed: int = 0) -> None:
+        self.settings = settings
+        self._rig = rig
+        self._velocity_noise = generator(seed, "velocity noise")
+        self._effort_noise = generator(seed, "effort noise")
+        self._jitter = generator(seed, "joint jitter")
+
+    def report(self, chunk: RigChunk) -> JointBatch:
+        """Joint states that fall into a stretch of motion."""
+        settings, rig = self.settings, self._rig
+        first, last = (math.ceil(index * settings.rate / rig.rate) for index in (chunk.first, chunk.first + len(chunk)))
+        times = np.arange(first, last) / settings.rate
+        position, velocity = rig.angle(times), rig.speed(times)
+        vibration = chunk.vibration_at(times) if settings.side == "output" or settings.effort == "reaction" else None
+        if vibration is not None and settings.side == "output":
+            position, velocity = position + vibration.displacement, velocity + vibration.velocity
+        effort = None
+        if settings.effort == "mean":
+            effort = np.full(times.size, rig.model.torque.mean)
+        elif settings.effort == "transmitted":
+            effort = rig.torque(times, drive=False)
+        elif settings.effort == "reaction" and vibration is not None:
+            effort = rig.reaction(times, vibration)
+        sign = -1.0 if settings.reversed else 1.0
+        position = sign * position
+        if settings.resolution:
+            position = np.round(position / settings.resolution) * settings.resolution
+        velocity = sign * velocity + settings.velocity_noise * self._velocity_noise.standard_normal(times.size)
+        if effort is not None:
+            effort = sign * effort + settings.effort_noise * self._effort_noise.standard_normal(times.size)
+        error = settings.jitter * self._jitter.standard_normal(times.size)
+        return JointBatch(times, nanoseconds(times + error), position, velocity if settings.velocity else None, effort)

@@ -1,0 +1,59 @@
+"""What an IMU on the output link feels: its axes, the turning and gravity."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from .programme import FloatArray
+from .rig import RigChunk, Surroundings
+
+STANDARD_GRAVITY = 9.80665
+"""[m/s²]"""
+
+_AXES = "xyz"
+
+
+class ImuBatch(NamedTuple):
+    """Readings of an IMU, one row a sample."""
+
+    linear_acceleration: FloatArray
+    """Specific force [m/s²], shape (samples, 3)."""
+    angular_velocity: FloatArray
+    """[rad/s], shape (samples, 3)."""
+
+
+def imu_readings(
+    motion: RigChunk, samples: FloatArray, *, radius: float, axis: str, surroundings: Surroundings
+) -> ImuBatch:
+    """Readings of an IMU at `radius` [m] from the joint's axis.
+
+    Parameters
+    ----------
+    motion : RigChunk
+    samples : ndarray, shape (samples,)
+        Measured torsional acceleration [rad/s²].
+    radius : float
+    axis : str
+        The axis along the motion, ``'y'`` or with a minus. The next one in the order x, y, z, x lies along the
+        joint's axis and the remaining one points outwards, so that for y these are z and x.
+    surroundings : Surroundings
+        With gravity's torque the joint's axis lies level and the tangential axis feels gravity; else it stands upright.
+    """
+    sign = -1.0 if axis.startswith("-") else 1.0
+    tangential = _AXES.index(axis[-1])
+    along, outward = (tangential + 1) % 3, (tangential + 2) % 3
+    force, turning = np.zeros((len(motion), 3)), np.zeros((len(motion), 3))
+    force[:, tangential] = radius * samples
+    force[:, outward] = -radius * motion.speed**2
+    if surroundings.gravity:
+        turn = motion.angle - surroundings.gravity_angle
+        force[:, tangential] -= STANDARD_GRAVITY * np.cos(turn)
+        force[:, outward] -= STANDARD_GRAVITY * np.sin(turn)
+    else:
+        force[:, along] = STANDARD_GRAVITY
+    turning[:, along] = motion.speed + motion.velocity
+    # Mounted the other way round: turned by half a turn about the outward axis.
+    force[:, tangential] *= sign
+    force[:, along] *= sign
+    turning[:, along] *= sign
+    return ImuBatch(force, turning)

@@ -1,0 +1,283 @@
+"""The node ``hd_sim_node``: a simulated rig that publishes what hd_monitor listens to."""
+
+import sys
+import time
+from collections.abc import Sequence
+from typing import Any
+
+import rclpy
+from hd_monitor.errors import HdMonitorError
+from hd_monitor.parameter import Parameter
+from hd_monitor.ros.parameters import describe
+from hd_monitor.settings import NODE_PARAMETERS as MONITOR_NODE_PARAMETERS
+from rcl_interfaces.msg import SetParametersResult
+from rclpy.clock import Clock, ClockType
+from rclpy.duration import Duration
+from rclpy.exceptions import ParameterException
+from rclpy.executors import ExternalShutdownException
+from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
+from rclpy.logging import get_logger
+from rclpy.parameter import Parameter as RosParameter
+from rclpy.qos import QoSProfile
+from rclpy.task import Future
+
+from .publishers import WRITERS, Writer
+from .settings import CHANGEABLE, PARAMETERS, RigSettings, pick
+from .simulation import Simulation, check_stability
+from .stream import Stream
+
+NAME = "hd_sim_node"
+PUBLISH_PERIOD = 0.01
+"""Seconds between two looks at the clock: what a message may come late by."""
+LONGEST_TURN = 0.05
+"""Seconds that publishing may take before services and parameters get their turn."""
+FLUSH_TIME = 5.0
+"""Seconds in which subscribers must have taken the last messages before the process ends."""
+UNUSABLE_INPUT = 2
+"""Exit status for parameters with which no rig can run."""
+
+NODE_PARAMETERS: tuple[Parameter, ...] = (
+    *(parameter for parameter in MONITOR_NODE_PARAMETERS if parameter.name == "autostart"),
+    Parameter(
+        name="time_scale",
+        default=1.0,
+        low=0.001,
+        high=10_000.0,
+        description="simulated seconds in a second; stamps start now and advance by simulated time",
+    ),
+    Parameter(
+        name="wait_for_subscribers",
+        default=0,
+        low=0,
+        high=100,
+        description="start when joint_states and the vibration's topics each have so many subscribers; 0: at once",
+    ),
+    Parameter(name="exit_at_end", default=False, description="end the process when the programme has ended"),
+    Parameter(
+        name="queue_seconds",
+        default=4.0,
+        unit="s",
+        low=0.1,
+        high=60.0,
+        description="depth of the publishers' queues, in seconds of real time",
+    ),
+)
+"""Parameters of the node beside the rig's."""
+
+SUCCESS = TransitionCallbackReturn.SUCCESS
+
+
+class HdSimNode(LifecycleNode):
+    """Publishes a simulated rig: configured, it has its rig at the start; active, it runs; deactivated, it pauses.
+
+    Parameters
+    ----------
+    **options
+        Passed on to the base class: ``context``, ``namespace``, ``parameter_overrides`` …
+
+    Attributes
+    ----------
+    finished : Future
+        Done when the programme has ended, or cannot begin, and ``exit_at_end`` is set.
+
+    Raises
+    ------
+    ParameterError, GeometryError
+        If a parameter is impossible; the message says which, why and what to do.
+    """
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(NAME, automatically_declare_parameters_from_overrides=True, **options)
+        self.finished: Future = Future()
+        self._steady = Clock(clock_type=ClockType.STEADY_TIME)
+        self._simulation: Simulation | None = None
+        self._stream: Stream | None = None
+        self._writers: dict[str, Writer] = {}
+        self._outlets: dict[str, Any] = {}
+        self._timer: Any = None
+        self._refusal: HdMonitorError | None = None
+        self._declare_all()
+        self.add_on_set_parameters_callback(self._check)
+        self.add_post_set_parameters_callback(self._apply)
+        if self.get_parameter("autostart").value:
+            self._bring_up()
+
+    def _bring_up(self) -> None:
+        if self.trigger_configure() != SUCCESS or self.trigger_activate() != SUCCESS:
+            raise self._refusal or HdMonitorError("the rig could not be started; see the log above")
+
+    # Parameters -----------------------------------------------------------------------------------------------------
+
+    def _declare_all(self) -> None:
+        given = {p.name: p.value for p in self.get_parameters(self.list_parameters([], 0).names)}
+        settings = RigSettings.from_mapping(pick(given, NODE_PARAMETERS))
+        for parameter in PARAMETERS:
+            self._declare(parameter, settings[parameter.name], fixed=not parameter.name.startswith(CHANGEABLE))
+        for parameter in NODE_PARAMETERS:
+            value = parameter.check(given.get(parameter.name, parameter.default))
+            self._declare(parameter, value, fixed=parameter.name != "time_scale")
+
+    def _declare(self, parameter: Parameter, value: Any, *, fixed: bool) -> None:
+        """Declare with a checked value what ROS may have declared already with the raw one."""
+        name = parameter.name
+        if self.has_parameter(name):
+            self.undeclare_parameter(name)
+        self.declare_parameter(name, value, describe(parameter, read_only=fixed), ignore_override=True)
+
+    def _settings(self, changes: Sequence[RosParameter] = ()) -> RigSettings:
+        names = [parameter.name for parameter in PARAMETERS]
+        values = {p.name: p.value for p in self.get_parameters(names)}
+        values |= {p.name: p.value for p in changes if p.name in values}
+        return RigSettings.from_mapping(values)
+
+    def _check(self, parameters: Sequence[RosParameter]) -> SetParametersResult:
+        try:
+            settings = self._settings(parameters)
+            if self._simulation is not None:
+                check_stability(settings)
+        except HdMonitorError as error:
+            return SetParametersResult(successful=False, reason=str(error))
+        return SetParametersResult(successful=True)
+
+    def _apply(self, parameters: Sequence[RosParameter]) -> None:
+        settings = self._settings()
+        if self._simulation is not None and settings != self._simulation.settings:
+            self._simulation.change(settings)
+            self._remark()
+        if self._stream is not None:
+            self._stream.set_scale(self.get_parameter("time_scale").value, self._steady_time())
+
+    def _remark(self) -> None:
+        """Log what is being simulated, and what the user may not have meant."""
+        if self._simulation is None:
+            return
+        settings = self._simulation.settings
+        model = settings.model
+        self.get_logger().info(
+            f"rig {settings.reducer.flexspline_teeth}/{settings.reducer.circular_spline_teeth}, programme "
+            f"{settings['programme']}, defect {settings['defect']}: index of the flexspline "
+            f"{100 * model.flexspline.index:.2f} %, of the circular spline {100 * model.circular_spline.index:.2f} %"
+        )
+        for remark in (*settings.remarks, self._simulation.warning):
+            if remark:
+                self.get_logger().warning(remark)
+
+    # Lifecycle ------------------------------------------------------------------------------------------------------
+
+    def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Set the rig up at its start, with its publishers."""
+        try:
+            settings = self._settings()
+            self._simulation = Simulation(settings)
+        except HdMonitorError as error:
+            self._refusal = error
+            self.get_logger().error(str(error))
+            return TransitionCallbackReturn.FAILURE
+        self._remark()
+        scale = self.get_parameter("time_scale").value
+        self._stream = Stream(self._simulation, scale)
+        seconds = self.get_parameter("queue_seconds").value
+        for topic in self._simulation.topics:
+            writer = WRITERS[topic](settings)
+            depth = max(10, round(seconds * scale * self._simulation.message_rate(topic)))
+            self._writers[topic] = writer
+            self._outlets[topic] = self.create_lifecycle_publisher(writer.message_type, topic, QoSProfile(depth=depth))
+        return super().on_configure(state)
+
+    def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Run, as soon as enough subscribers are there."""
+        self._timer = self.create_timer(PUBLISH_PERIOD, self._turn, clock=self._steady)
+        wanted = self.get_parameter("wait_for_subscribers").value
+        if wanted:
+            self.get_logger().info(f"waiting for {wanted} subscriber(s) of {', '.join(self._outlets)}")
+        return super().on_activate(state)
+
+    def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Pause; activated again, the rig goes on where it was, with stamps of then."""
+        self._stop()
+        return super().on_deactivate(state)
+
+    def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Take the rig down."""
+        self._dismantle()
+        return super().on_cleanup(state)
+
+    def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Stop and take the rig down."""
+        self._stop()
+        self._dismantle()
+        return super().on_shutdown(state)
+
+    def _stop(self) -> None:
+        if self._timer is not None:
+            self.destroy_timer(self._timer)
+            self._timer = None
+        if self._stream is not None:
+            self._stream.pause()
+
+    def _dismantle(self) -> None:
+        for outlet in self._outlets.values():
+            self.destroy_lifecycle_publisher(outlet)
+        self._outlets, self._writers = {}, {}
+        self._simulation = self._stream = None
+
+    # Work -----------------------------------------------------------------------------------------------------------
+
+    def _turn(self) -> None:
+        """Publish what is due."""
+        stream = self._stream
+        if stream is None:
+            return
+        if not stream.running:
+            wanted = self.get_parameter("wait_for_subscribers").value
+            if any(outlet.get_subscription_count() < wanted for outlet in self._outlets.values()):
+                return
+            stream.start(self._steady_time(), self.get_clock().now().nanoseconds)
+        give_up = time.monotonic() + LONGEST_TURN
+        for stretch, topic, row in stream.due(self._steady_time()):
+            self._outlets[topic].publish(self._writers[topic].write(stretch, row, stream.epoch))
+            if time.monotonic() > give_up:
+                break
+        if stream.lag(self._steady_time()) > 1.0:
+            self.get_logger().warning(
+                "cannot keep up with the clock; lower time_scale or sensor.rate, or publish blocks instead of samples",
+                throttle_duration_sec=10.0,
+            )
+        if stream.ended and self._timer is not None:
+            self.get_logger().info(f"the programme has ended after {stream.position:.6g} s; nothing more is published")
+            self.destroy_timer(self._timer)
+            self._timer = None
+            if self.get_parameter("exit_at_end").value:
+                for outlet in self._outlets.values():
+                    outlet.wait_for_all_acked(Duration(seconds=FLUSH_TIME))
+                self.finished.set_result(None)
+
+    def _steady_time(self) -> float:
+        return float(self._steady.now().nanoseconds) * 1e-9
+
+
+def main(args: list[str] | None = None) -> int:
+    """Run the node until it is interrupted or has ended; return 0, or 2 for parameters with which no rig can run."""
+    node = None
+    try:
+        rclpy.init(args=args)
+    except RuntimeError as error:  # a parameter file that cannot be read, or a malformed argument
+        get_logger(NAME).fatal(str(error))
+        return UNUSABLE_INPUT
+    try:
+        node = HdSimNode()
+        rclpy.spin_until_future_complete(node, node.finished)
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    except (HdMonitorError, ParameterException) as error:
+        get_logger(NAME).fatal(str(error))
+        return UNUSABLE_INPUT
+    finally:
+        if node is not None:
+            node.destroy_node()
+        rclpy.try_shutdown()
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

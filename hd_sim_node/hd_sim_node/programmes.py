@@ -1,0 +1,213 @@
+"""The speed programmes to choose from: what each is called, its parameters, and how its corners come about.
+
+A new programme is one function and one entry of :data:`PROGRAMMES`.
+"""
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from hd_monitor.errors import ParameterError
+from hd_monitor.parameter import Parameter
+from hd_monitor.reducer import Reducer
+
+from .programme import NO_RIPPLE, Ripple, SpeedProgramme
+
+Corners = tuple[list[float], list[float]]
+"""Times [s] and wave-generator speeds [rpm]."""
+
+
+def _speed(name: str, default: float, description: str) -> Parameter:
+    return Parameter(
+        name=name,
+        default=default,
+        unit="rpm",
+        low=-20_000.0,
+        high=20_000.0,
+        description=f"wave generator: {description}",
+    )
+
+
+def _rate(name: str, default: float, description: str) -> Parameter:
+    description = f"wave generator: {description}"
+    return Parameter(name=name, default=default, unit="rpm/s", low=1e-3, high=1e6, description=description)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ProgrammeKind:
+    """A kind of programme.
+
+    Parameters
+    ----------
+    summary : str
+        What the wave generator does, in words.
+    parameters : tuple of Parameter
+    corners : callable
+        Of the parameters' values (by the part of the name after the dot), the reducer, and whether the cycle must
+        come back to where it began; returns times [s] and speeds [rpm].
+    """
+
+    summary: str
+    parameters: tuple[Parameter, ...]
+    corners: Callable[[Mapping[str, Any], Reducer, bool], Corners]
+
+
+def build_programme(
+    name: str, values: Mapping[str, Any], reducer: Reducer, *, cycles: int = 0, ripple: Ripple = NO_RIPPLE
+) -> SpeedProgramme:
+    """Build the programme called `name`.
+
+    Parameters
+    ----------
+    name : str
+        One of :data:`PROGRAMMES`.
+    values : mapping
+        Values of its parameters by their full names, as ``dwell.step``; other names are left alone.
+    reducer : Reducer
+    cycles : int
+        How often it is run through; 0: without end.
+    ripple : Ripple, optional
+
+    Raises
+    ------
+    ParameterError
+        If the name is unknown or the values make no programme.
+    """
+    if name not in PROGRAMMES:
+        raise ParameterError(f"programme = {name!r} is unknown; choose one of: {', '.join(PROGRAMMES)}")
+    kind = PROGRAMMES[name]
+    own = {p.name.partition(".")[2]: values.get(p.name, p.default) for p in kind.parameters}
+    times, speeds = kind.corners(own, reducer, cycles != 1)
+    return SpeedProgramme(times=np.array(times), speeds=np.array(speeds), cycles=cycles, ripple=ripple)
+
+
+def _chain(start: float, *pieces: tuple[float, float]) -> Corners:
+    """Corners from a start speed and pieces (duration [s], speed at the end [rpm]); pieces without duration vanish."""
+    times, speeds = [0.0], [start]
+    for duration, speed in pieces:
+        if duration > 0.0:
+            times.append(times[-1] + duration)
+            speeds.append(speed)
+    return times, speeds
+
+
+def _dwell(values: Mapping[str, Any], reducer: Reducer, closed: bool) -> Corners:
+    first, last, step, rate = values["first"], values["last"], values["step"], values["ramp_rate"]
+    count = math.floor(abs(last - first) / step + 1e-9) + 1
+    speeds = [first + math.copysign(step * i, last - first) for i in range(count)]
+    pieces = [(values["time"], first)]
+    for before, speed in pairwise(speeds):
+        pieces += [(abs(speed - before) / rate, speed), (values["time"], speed)]
+    if closed:
+        pieces.append((abs(speeds[-1] - first) / rate, first))
+    return _chain(first, *pieces)
+
+
+def _fixed(values: Mapping[str, Any], reducer: Reducer, closed: bool) -> Corners:
+    return _chain(values["speed"], (values["time"], values["speed"]))
+
+
+def _sweep(values: Mapping[str, Any], reducer: Reducer, closed: bool) -> Corners:
+    first, last = values["first"], values["last"]
+    duration = abs(last - first) / values["rate"]
+    if duration == 0.0:
+        raise ParameterError(
+            f"a sweep from {first:g} to {last:g} rpm goes nowhere; give two speeds, or programme fixed"
+        )
+    return _chain(first, (duration, last), *([(duration, first)] if closed else []))
+
+
+def _strokes(values: Mapping[str, Any], reducer: Reducer, closed: bool) -> Corners:
+    revolutions = values["angle"] / 360.0 * reducer.reduction
+    rate = values["acceleration"]
+    # A short stroke brakes before it has reached its speed: v² / (60 a) revolutions go into the two ramps.
+    speed = min(values["speed"], math.sqrt(60.0 * rate * revolutions))
+    ramp = speed / rate
+    hold = max(0.0, 60.0 * revolutions / speed - ramp)
+    pieces: list[tuple[float, float]] = []
+    for direction in (1.0, -1.0):
+        peak = direction * speed
+        pieces += [(ramp, peak), (hold, peak), (ramp, 0.0), (values["pause"], 0.0)]
+    return _chain(0.0, *pieces)
+
+
+def _profile(values: Mapping[str, Any], reducer: Reducer, closed: bool) -> Corners:
+    return list(values["times"]), list(values["speeds"])
+
+
+PROGRAMMES: dict[str, ProgrammeKind] = {
+    "dwell": ProgrammeKind(
+        summary="holds one speed after the other, with ramps between",
+        parameters=(
+            _speed("dwell.first", 200.0, "first speed held"),
+            _speed("dwell.last", 3000.0, "last speed held"),
+            Parameter(
+                name="dwell.step", default=100.0, unit="rpm", low=0.1, high=20_000.0, description="distance of speeds"
+            ),
+            Parameter(
+                name="dwell.time", default=5.0, unit="s", low=0.01, high=86_400.0, description="time at each speed"
+            ),
+            _rate("dwell.ramp_rate", 500.0, "change of speed between dwells"),
+        ),
+        corners=_dwell,
+    ),
+    "fixed": ProgrammeKind(
+        summary="holds one speed",
+        parameters=(
+            _speed("fixed.speed", 850.0, "speed"),
+            Parameter(name="fixed.time", default=60.0, unit="s", low=0.01, high=1e7, description="length of one cycle"),
+        ),
+        corners=_fixed,
+    ),
+    "sweep": ProgrammeKind(
+        summary="passes from one speed to another at a steady rate, and back if it repeats",
+        parameters=(
+            _speed("sweep.first", 200.0, "speed at the start"),
+            _speed("sweep.last", 3000.0, "speed at the end"),
+            _rate("sweep.rate", 50.0, "change of speed"),
+        ),
+        corners=_sweep,
+    ),
+    "strokes": ProgrammeKind(
+        summary="goes to and fro over an arc of the output, as a robot's joint does",
+        parameters=(
+            Parameter(
+                name="strokes.angle", default=120.0, unit="deg", low=0.01, high=1e5, description="arc of the output"
+            ),
+            Parameter(
+                name="strokes.speed",
+                default=1500.0,
+                unit="rpm",
+                low=1.0,
+                high=20_000.0,
+                description="largest speed of the wave generator, reached where the arc is long enough",
+            ),
+            _rate("strokes.acceleration", 3000.0, "acceleration and braking"),
+            Parameter(
+                name="strokes.pause", default=0.2, unit="s", low=0.0, high=3600.0, description="standstill at each end"
+            ),
+        ),
+        corners=_strokes,
+    ),
+    "profile": ProgrammeKind(
+        summary="follows corners given one by one",
+        parameters=(
+            Parameter(
+                name="profile.times", default=(0.0, 60.0), unit="s", low=0.0, description="times of the corners, from 0"
+            ),
+            Parameter(
+                name="profile.speeds",
+                default=(850.0, 850.0),
+                unit="rpm",
+                low=-20_000.0,
+                high=20_000.0,
+                description="wave generator: speeds at the corners",
+            ),
+        ),
+        corners=_profile,
+    ),
+}
+"""Programmes by the word that the parameter `programme` takes."""

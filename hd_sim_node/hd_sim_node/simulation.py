@@ -1,0 +1,218 @@
+"""The whole rig as a stream of messages, as arrays: motion, sensor, joint and transport, a stretch at a time."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from hd_monitor.contract import NANOSECONDS, Block
+from hd_monitor.errors import ParameterError
+
+from hd_monitor import contract
+
+from .encoder import Joint, JointBatch
+from .programme import FloatArray
+from .rig import Rig, RigChunk
+from .sensor import Accelerometer, IntArray, nanoseconds
+from .settings import RigSettings
+from .stability import describe, unstable_speeds
+from .transport import Dispatch, Transport, TransportSettings
+
+_STRETCH = 0.25  # s of simulated time in one stretch, or one block if that is longer
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Stretch:
+    """The messages of a stretch of simulated time; all stamps count from the start, in nanoseconds.
+
+    Attributes
+    ----------
+    end : int
+        Simulated time [ns] at its end.
+    motion : RigChunk
+        What truly happened.
+    samples : ndarray, shape (samples,)
+        What the accelerometer put out [rad/s²].
+    stamps : ndarray of int64, shape (samples,)
+        Its stamps [ns].
+    blocks : tuple of Block
+        The same samples in blocks.
+    joint : JointBatch
+    dispatch : dict of str to Dispatch
+        By topic, of those published: which message (row of `samples`, `blocks` or `joint`) goes out when.
+    """
+
+    end: int
+    motion: RigChunk
+    samples: FloatArray
+    stamps: IntArray
+    blocks: tuple[Block, ...]
+    joint: JointBatch
+    dispatch: dict[str, Dispatch]
+
+    def schedule(self) -> Iterator[tuple[int, str, int]]:
+        """Yield (due [ns], topic, row) of every message in the order of going out."""
+        topics = list(self.dispatch)
+        due = np.concatenate([self.dispatch[topic].due for topic in topics])
+        row = np.concatenate([self.dispatch[topic].row for topic in topics])
+        which = np.repeat(np.arange(len(topics)), [self.dispatch[topic].due.size for topic in topics])
+        order = np.argsort(due, kind="stable")
+        for when, topic, index in zip(due[order].tolist(), which[order].tolist(), row[order].tolist(), strict=True):
+            yield when, topics[topic], index
+
+
+class Simulation:
+    """A simulated rig.
+
+    Parameters
+    ----------
+    settings : RigSettings
+
+    Raises
+    ------
+    ParameterError
+        If ``unstable`` is ``refuse`` and vibration would grow without bound.
+
+    Attributes
+    ----------
+    warning : str
+        What ``unstable: warn`` has to say; empty if there is nothing.
+
+    Examples
+    --------
+    >>> rig = Simulation(RigSettings.from_mapping({"programme": "fixed", "duration": 2.0}))
+    >>> sum(len(stretch.samples) for stretch in rig)
+    2000
+    """
+
+    def __init__(self, settings: RigSettings) -> None:
+        self.warning = check_stability(settings)
+        self._settings = settings
+        rate, seed = settings["sensor.rate"], settings["seed"]
+        self._rig = Rig(
+            settings.model,
+            settings.programme,
+            rate=rate,
+            start_angle=settings.start_angle,
+            surroundings=settings.surroundings,
+        )
+        self._accelerometer = Accelerometer(settings.sensor, rate=rate, seed=seed)
+        self._joint = Joint(self._rig, settings.joint, seed=seed)
+        self._block_size: int = settings["block_size"]
+        self._sequence = 0
+        topics = []
+        if settings["publish"] in ("block", "both"):
+            topics.append(contract.TORSIONAL_ACCELERATION_BLOCK)
+        if settings["publish"] in ("samples", "both"):
+            topics.append(contract.TORSIONAL_ACCELERATION)
+        if settings["publish_imu"]:
+            topics.append(contract.IMU)
+        self._transports = {topic: Transport(settings.transport, seed=seed, topic=topic) for topic in topics}
+        loss = TransportSettings(loss=settings["joint_states.loss"])
+        self._transports[contract.JOINT_STATES] = Transport(loss, seed=seed, topic=contract.JOINT_STATES)
+        blocks = max(1, round(_STRETCH * rate / self._block_size))
+        self._count = blocks * self._block_size
+        total = settings.duration * rate
+        # Whole blocks, at least one; rounding must not cost the last one.
+        self._left = max(1, int(total / self._block_size + 1e-9)) if total < np.inf else None
+
+    @property
+    def topics(self) -> tuple[str, ...]:
+        """Topics published."""
+        return tuple(self._transports)
+
+    @property
+    def settings(self) -> RigSettings:
+        """Settings in force."""
+        return self._settings
+
+    def message_rate(self, topic: str) -> float:
+        """Messages per simulated second on a topic."""
+        if topic == contract.JOINT_STATES:
+            return float(self._settings["joint_states.rate"])
+        return self._rig.rate / (self._block_size if topic == contract.TORSIONAL_ACCELERATION_BLOCK else 1)
+
+    def change(self, settings: RigSettings) -> None:
+        """Go on with another defect, torque, surroundings, sensor or transport; the motion carries on.
+
+        Programme, rates, topics and seed stay as they were at the start.
+
+        Raises
+        ------
+        ParameterError
+            As at the start, if vibration would grow without bound; nothing is changed then.
+        """
+        self.warning = check_stability(settings)
+        self._settings = settings
+        self._rig.model = settings.model
+        self._rig.surroundings = settings.surroundings
+        self._accelerometer.settings = settings.sensor
+        self._joint.settings = settings.joint
+        for topic, transport in self._transports.items():
+            if topic != contract.JOINT_STATES:
+                transport.settings = settings.transport
+
+    def __iter__(self) -> Iterator[Stretch]:
+        """Yield stretch after stretch until the programme or `duration` ends."""
+        while (stretch := self.advance()) is not None:
+            yield stretch
+
+    def advance(self) -> Stretch | None:
+        """Simulate the next stretch; None at the end."""
+        count = self._count
+        if self._left is not None:
+            blocks = min(count // self._block_size, self._left)
+            if not blocks:
+                return None
+            self._left -= blocks
+            count = blocks * self._block_size
+        motion = self._rig.advance(count)
+        samples, stamps = self._accelerometer.measure(motion), self._accelerometer.stamps(motion)
+        joint = self._joint.report(motion)
+        blocks = self._blocks(samples, stamps)
+        instants = nanoseconds(motion.times)
+        due = {
+            contract.TORSIONAL_ACCELERATION_BLOCK: instants[self._block_size - 1 :: self._block_size],
+            contract.TORSIONAL_ACCELERATION: instants,
+            contract.IMU: instants,
+            contract.JOINT_STATES: nanoseconds(joint.times),
+        }
+        return Stretch(
+            end=round((motion.first + count) * NANOSECONDS / self._rig.rate),
+            motion=motion,
+            samples=samples,
+            stamps=stamps,
+            blocks=blocks,
+            joint=joint,
+            dispatch={topic: transport.dispatch(due[topic]) for topic, transport in self._transports.items()},
+        )
+
+    def _blocks(self, samples: FloatArray, stamps: IntArray) -> tuple[Block, ...]:
+        size = self._block_size
+        first, self._sequence = self._sequence, self._sequence + samples.size // size
+        return tuple(
+            Block(stamp, 1.0 / self._rig.rate, first + number, row)
+            for number, (stamp, row) in enumerate(zip(stamps[::size].tolist(), samples.reshape(-1, size), strict=True))
+        )
+
+
+def check_stability(settings: RigSettings) -> str:
+    """Look for speeds of the programme at which vibration grows without bound, as ``unstable`` says.
+
+    Returns
+    -------
+    str
+        The warning; empty if there is nothing to warn of.
+
+    Raises
+    ------
+    ParameterError
+        If ``unstable`` is ``refuse``.
+    """
+    if settings["unstable"] == "ignore":
+        return ""
+    found = unstable_speeds(settings.model, settings.programme)
+    if not found:
+        return ""
+    if settings["unstable"] == "refuse":
+        raise ParameterError(describe(found))
+    return describe(found)

@@ -1,0 +1,51 @@
+"""What happens to messages on their way: some are lost, some come twice, some come late."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from .randomness import generator
+from .sensor import IntArray
+
+_LATEST = 3.0  # message intervals: a late message lets up to three others pass
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TransportSettings:
+    """Fractions of a topic's messages that are lost, come twice, or come late (behind up to three later ones)."""
+
+    loss: float = 0.0
+    duplicates: float = 0.0
+    late: float = 0.0
+
+
+class Dispatch(NamedTuple):
+    """When which message goes out, in the order of going."""
+
+    due: IntArray
+    """Simulated time [ns] since the start."""
+    row: IntArray
+    """Row of the message in its batch."""
+
+
+class Transport:
+    """Sends the messages of one topic on their way."""
+
+    def __init__(self, settings: TransportSettings, *, seed: int = 0, topic: str = "") -> None:
+        self.settings = settings
+        self._random = generator(seed, f"transport {topic}")
+
+    def dispatch(self, due: IntArray) -> Dispatch:
+        """Decide over messages that should go out at `due` [ns], rising; none goes later than the last one should."""
+        settings, count = self.settings, due.size
+        lost, twice, late, extent = self._random.random((count, 4)).T
+        index = np.arange(count)
+        if count > 1 and settings.late:
+            spacing = float(due[-1] - due[0]) / (count - 1)
+            delay = np.where(late < settings.late, np.rint((1.0 + extent * (_LATEST - 1.0)) * 1.5 * spacing), 0.0)
+            due = np.minimum(due + delay.astype(np.int64), due[-1])
+        copies = np.where(lost < settings.loss, 0, np.where(twice < settings.duplicates, 2, 1))
+        index, due = np.repeat(index, copies), np.repeat(due, copies)
+        order = np.argsort(due, kind="stable")
+        return Dispatch(due[order], index[order])
