@@ -27,6 +27,7 @@ setup(
     entry_points={
         "console_scripts": [
             "hd_sim_node = hd_sim_node.node:main",
+            "hd-sim-bag = hd_sim_node.bag_command:main",
         ],
     },
 )

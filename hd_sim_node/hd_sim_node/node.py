@@ -9,7 +9,6 @@ import rclpy
 from hd_monitor.errors import HdMonitorError
 from hd_monitor.parameter import Parameter
 from hd_monitor.ros.parameters import describe
-from hd_monitor.settings import NODE_PARAMETERS as MONITOR_NODE_PARAMETERS
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.clock import Clock, ClockType
 from rclpy.duration import Duration
@@ -21,6 +20,7 @@ from rclpy.parameter import Parameter as RosParameter
 from rclpy.qos import QoSProfile
 from rclpy.task import Future
 
+from .node_parameters import NODE_PARAMETERS
 from .publishers import WRITERS, Writer
 from .settings import CHANGEABLE, PARAMETERS, RigSettings, pick
 from .simulation import Simulation, check_stability
@@ -35,34 +35,6 @@ FLUSH_TIME = 5.0
 """Seconds in which subscribers must have taken the last messages before the process ends."""
 UNUSABLE_INPUT = 2
 """Exit status for parameters with which no rig can run."""
-
-NODE_PARAMETERS: tuple[Parameter, ...] = (
-    *(parameter for parameter in MONITOR_NODE_PARAMETERS if parameter.name == "autostart"),
-    Parameter(
-        name="time_scale",
-        default=1.0,
-        low=0.001,
-        high=10_000.0,
-        description="simulated seconds in a second; stamps start now and advance by simulated time",
-    ),
-    Parameter(
-        name="wait_for_subscribers",
-        default=0,
-        low=0,
-        high=100,
-        description="start when joint_states and the vibration's topics each have so many subscribers; 0: at once",
-    ),
-    Parameter(name="exit_at_end", default=False, description="end the process when the programme has ended"),
-    Parameter(
-        name="queue_seconds",
-        default=4.0,
-        unit="s",
-        low=0.1,
-        high=60.0,
-        description="depth of the publishers' queues, in seconds of real time",
-    ),
-)
-"""Parameters of the node beside the rig's."""
 
 SUCCESS = TransitionCallbackReturn.SUCCESS
 
