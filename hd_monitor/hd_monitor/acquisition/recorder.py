@@ -122,7 +122,7 @@ class Recorder:
 
     def _vibration(self, samples: Samples, epoch: int, turning: bool) -> tuple[tuple[Record, ...], FloatArray]:
         if not samples.stamps.size:
-            self._grid, self._joined = None, False
+            self._joined = False
             return (), np.empty(0)
         grid = self._grid
         clock = recover_clock(_seconds(samples.stamps, epoch), grid.period if grid else None)

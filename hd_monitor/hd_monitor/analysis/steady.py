@@ -2,6 +2,7 @@
 
 import math
 from collections import deque
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -50,22 +51,24 @@ class SteadyStretch:
         travel = abs(float(newest.angle[-1] - rest.angle[0])) / math.tau
         return travel > _REVOLUTIONS or newest.start + newest.period * len(newest) - rest.start > _LONGEST
 
-    def record(self) -> Record | None:
-        """Return the stretch as one record, or None while the speed is not steady."""
-        if not self._parts:
-            return None
-        parts = list(self._parts)
-        if len(parts) == 1:
-            return parts[0]
-        return Record(
-            start=parts[0].start,
-            period=float(np.mean([part.period for part in parts])),
-            acceleration=np.concatenate([part.acceleration for part in parts]),
-            angle=np.concatenate([part.angle for part in parts]),
-            speed=np.concatenate([part.speed for part in parts]),
-            torque=np.concatenate([part.torque for part in parts]),
-            continues=parts[0].continues,
-        )
+    def parts(self) -> tuple[Record, ...]:
+        """Return the records of the stretch, none while the speed is not steady."""
+        return tuple(self._parts)
+
+
+def join(parts: Sequence[Record]) -> Record | None:
+    """Join records that follow each other into one; None if there are none."""
+    if len(parts) < 2:
+        return parts[0] if parts else None
+    return Record(
+        start=parts[0].start,
+        period=float(np.mean([part.period for part in parts])),
+        acceleration=np.concatenate([part.acceleration for part in parts]),
+        angle=np.concatenate([part.angle for part in parts]),
+        speed=np.concatenate([part.speed for part in parts]),
+        torque=np.concatenate([part.torque for part in parts]),
+        continues=parts[0].continues,
+    )
 
 
 def _near(first: float, last: float, reference: float) -> bool:
