@@ -9,9 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from hd_monitor.errors import HdMonitorError
-from hd_monitor.offline.parameters import load_parameters, parse_override
 
-from .bag import COMPRESSIONS, STORAGES, write_bag
 from .defects import CUSTOM, DEFECTS
 from .node_parameters import NODE_PARAMETERS
 from .programmes import PROGRAMMES
@@ -47,9 +45,9 @@ def build_parser() -> argparse.ArgumentParser:
     parser.add_argument("--publish", choices=("block", "samples", "both", "none"), help="form of the vibration")
     parser.add_argument("--duration", type=float, metavar="S", help="simulated time; default: the programme once")
     parser.add_argument("--seed", type=int, metavar="N", help="of all random numbers")
-    parser.add_argument("--storage", choices=tuple(STORAGES), default="mcap", help="format (default: %(default)s)")
+    parser.add_argument("--storage", choices=("mcap", "sqlite3"), default="mcap", help="format (default: %(default)s)")
     parser.add_argument(
-        "--compression", choices=tuple(COMPRESSIONS), default="none", help="Zstandard (default: %(default)s)"
+        "--compression", choices=("none", "file", "message"), default="none", help="Zstandard (default: %(default)s)"
     )
     parser.add_argument("--namespace", default="", metavar="NS", help="namespace of the topics")
     parser.add_argument(
@@ -63,6 +61,13 @@ def main(argv: Sequence[str] | None = None) -> int:
     arguments = build_parser().parse_args(argv)
     try:
         return _run(arguments)
+    except ModuleNotFoundError as error:
+        print(
+            f"hd-sim-bag: needs the Python package {error.name!r}, which is not installed; "
+            "pip install 'hd-monitor[offline]'",
+            file=sys.stderr,
+        )
+        return UNUSABLE_INPUT
     except HdMonitorError as error:
         print(f"hd-sim-bag: {error}", file=sys.stderr)
         return UNUSABLE_INPUT
@@ -71,6 +76,10 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _run(arguments: argparse.Namespace) -> int:
+    from hd_monitor.offline.parameters import load_parameters, parse_override
+
+    from .bag import write_bag
+
     overrides = dict(parse_override(text) for text in arguments.set)
     for name in ("defect", "programme", "publish", "duration", "seed"):
         if getattr(arguments, name) is not None:
