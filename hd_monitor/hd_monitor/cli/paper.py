@@ -1,0 +1,116 @@
+"""``hd-monitor paper``: the source paper reproduced, claim by claim, or its figures for a reducer of one's own."""
+
+import argparse
+import shlex
+import shutil
+import sys
+import time
+from collections.abc import Callable
+from importlib.util import find_spec
+from pathlib import Path
+
+from ..errors import HdMonitorError
+from ..paper.cases import has_cases, load_own_case, load_paper_cases
+from ..paper.claim import Outcome
+from ..paper.own_reducer import FIGURES, show
+from ..paper.reproduction import EXHIBITS, all_claims, reproduce
+from ..paper.table import claim_table, fact_table
+
+_WIDEST = 120
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the command's arguments."""
+    parser.description = (
+        "Computes every figure, table and claim of Gu, Tong, Huang and Li (2021), prints each claim beside our "
+        "own number, and "
+        "with --report writes the figures. Exit status: 0 if every claim passes (places where the paper "
+        "contradicts itself, "
+        "confirmed by our numbers, count as passing), 1 if one fails, 2 for unusable input."
+    )
+    parser.add_argument(
+        "--report",
+        metavar="DIR",
+        type=Path,
+        help="write every figure as PNG and one self-contained page, index.html, there",
+    )
+    parser.add_argument(
+        "--only",
+        metavar="ID",
+        action="append",
+        default=[],
+        help="compute only this figure (F10 means F10a and F10b); may be given again or hold a list with commas",
+    )
+    parser.add_argument(
+        "--params",
+        metavar="FILE",
+        type=Path,
+        help="YAML with a reducer of your own (teeth, mount, fn, ζ, β; see my_reducer.yaml in the installed "
+        "config folder): the "
+        "same figures for it, without the paper's claims; or an edited copy of paper.yaml: the paper with those values",
+    )
+    parser.add_argument("--list", action="store_true", help="list what can be computed, and end")
+    parser.add_argument("--quiet", action="store_true", help="no progress on standard error")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Compute, print and write; return the exit status."""
+    if arguments.list:
+        for entry in EXHIBITS:
+            print(f"{entry.id:6s}{entry.about}")
+        return 0
+    if arguments.report is not None:
+        _check_report(arguments.report)
+    start = time.perf_counter()
+    own = arguments.params is not None and not has_cases(arguments.params)
+    if own:
+        case = load_own_case(arguments.params)
+        exhibits = show(case, arguments.only, _progress(arguments))
+        print(fact_table(exhibits))
+        heading = f"Torsional vibration of the reducer in {arguments.params.name}"
+    else:
+        cases = load_paper_cases(arguments.params)
+        exhibits = reproduce(cases, arguments.only, _progress(arguments))
+        width = min(shutil.get_terminal_size((100, 24)).columns, _WIDEST)
+        print(claim_table(exhibits, max(width, 60)))
+        heading = "Torsional vibration of a harmonic driver (Gu et al. 2021), reproduced"
+    if arguments.report is not None:
+        from ..paper.page import write_report
+
+        print(f"report: {write_report(exhibits, arguments.report, heading=heading, command=_command(arguments))}")
+    _progress(arguments)(
+        f"{len(exhibits)} of {len(FIGURES if own else EXHIBITS)} in {time.perf_counter() - start:.1f} s"
+    )
+    return int(any(claim.outcome is Outcome.FAIL for claim in all_claims(exhibits)))
+
+
+def _progress(arguments: argparse.Namespace) -> Callable[[str], None]:
+    def tell(line: str) -> None:
+        if not arguments.quiet:
+            print(line, file=sys.stderr, flush=True)
+
+    return tell
+
+
+def _command(arguments: argparse.Namespace) -> str:
+    words = ["hd-monitor", "paper"]
+    for name in arguments.only:
+        words += ["--only", name]
+    if arguments.params is not None:
+        words += ["--params", arguments.params.name]
+    return shlex.join([*words, "--report", arguments.report.name or "."])
+
+
+def _check_report(folder: Path) -> None:
+    """Find out before the work, not after it, that the report cannot be written."""
+    missing = [name for name in ("matplotlib", "jinja2") if find_spec(name) is None]
+    if missing:
+        raise HdMonitorError(
+            f"--report needs {' and '.join(missing)}; pip install 'hd-monitor[offline]', or leave it out"
+        )
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise HdMonitorError(
+            f"--report {folder}: {error.strerror}; give a folder that can be made and written to"
+        ) from None

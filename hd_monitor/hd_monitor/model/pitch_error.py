@@ -1,0 +1,120 @@
+"""From an accumulated pitch error of a spline to its stiffness fluctuation (section 2.1 of Gu et al. 2021)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from ..errors import ParameterError
+from .parameters import FloatArray, StiffnessSeries
+
+_ANGLES = 2048
+"""Places of the wave generator over half a revolution at which the interference is evaluated."""
+
+MESHED_FRACTION = 0.25
+"""Part of the flexspline's teeth that mesh at once, in both lobes together (section 1: at least a quarter)."""
+
+
+@dataclass(frozen=True, slots=True)
+class PitchErrors:
+    """Accumulated pitch errors of a spline.
+
+    Parameters
+    ----------
+    accumulated : sequence of float
+        Error of each tooth's place against an ideal division, along the pitch circle [m], one a tooth; its mean is
+        a matter of where one starts to count and has no effect.
+
+    Raises
+    ------
+    ParameterError
+        If there are fewer than 4 teeth or a value is not finite.
+    """
+
+    accumulated: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        """Freeze the values and check them."""
+        values = tuple(float(x) for x in self.accumulated)
+        if len(values) < 4 or not all(np.isfinite(values)):
+            raise ParameterError(
+                f"{len(values)} accumulated pitch errors describe no spline; give one finite value in metres for "
+                "each tooth"
+            )
+        object.__setattr__(self, "accumulated", values)
+
+    @classmethod
+    def of_eccentric_gear(
+        cls, teeth: int, eccentricity: float, *, scatter: float = 0.0, seed: int = 0
+    ) -> "PitchErrors":
+        """Errors of a gear cut off its centre: one cycle a revolution, and tooth-to-tooth scatter.
+
+        Parameters
+        ----------
+        teeth : int
+        eccentricity : float
+            Amplitude [m].
+        scatter : float
+            Standard deviation of each tooth's own place [m].
+        seed : int
+            Of the scatter; the same seed gives the same gear.
+        """
+        places = 2.0 * np.pi * np.arange(teeth) / teeth
+        own = np.random.default_rng(seed).normal(0.0, scatter, teeth)
+        return cls(tuple((eccentricity * np.cos(places) + own).tolist()))
+
+    @property
+    def total(self) -> float:
+        """Total accumulated pitch error [m]: largest minus smallest, as a gear inspection prints it."""
+        return max(self.accumulated) - min(self.accumulated)
+
+    def interference(self, lobe_angle: npt.ArrayLike) -> FloatArray:
+        """Extra tooth deflection [m] with a lobe of the wave generator at `lobe_angle` [rad] on this spline, any shape.
+
+        The two lobes stand half a revolution apart, so the teeth of one zone are pressed against those of the other by
+        the difference of the two zones' errors; which of them gives way does not matter, so it is never negative. It
+        therefore varies twice a revolution (paper, case 1). Each zone averages over the teeth that mesh in it.
+        """
+        angle = np.asarray(lobe_angle, dtype=np.float64)
+        count = len(self.accumulated)
+        spectrum = np.fft.rfft(self.accumulated) / count
+        order = np.arange(spectrum.size)
+        spectrum = spectrum * np.sinc(order * MESHED_FRACTION / 2.0)
+        odd = spectrum[1::2]
+        # E(α) - E(α + π): even orders cancel, odd ones double; a real series counts each order twice
+        weight = np.where((order[1::2] * 2 == count), 1.0, 2.0)
+        difference = np.zeros(angle.shape)
+        for coefficient, number, twice in zip(odd, order[1::2], weight, strict=True):
+            difference += 2.0 * twice * (coefficient * np.exp(1j * number * angle)).real
+        return np.abs(difference)
+
+    def stiffness_series(self, sensitivity: float, harmonics: int = 3) -> StiffnessSeries:
+        """Stiffness fluctuation that the interference causes, over the spline's own phase 2·(lobe angle).
+
+        Parameters
+        ----------
+        sensitivity : float
+            Relative rise of the torsional stiffness for each metre of interference [1/m]; meshing stiffens with
+            preload.
+        harmonics : int
+            Harmonics of the series, each a cycle count of twice a lobe revolution.
+
+        Returns
+        -------
+        StiffnessSeries
+            Relative to the mean stiffness, interference included.
+
+        Raises
+        ------
+        ParameterError
+            If the sensitivity is negative or not finite.
+        """
+        if not (np.isfinite(sensitivity) and sensitivity >= 0.0):
+            raise ParameterError(
+                f"sensitivity = {sensitivity!r} 1/m is no stiffening; give the relative stiffness rise per "
+                "metre, 0 or more"
+            )
+        angles = np.pi * np.arange(_ANGLES) / _ANGLES
+        relative = 1.0 + sensitivity * self.interference(angles)
+        spectrum = np.fft.rfft(relative) / _ANGLES
+        return StiffnessSeries.from_phasors(2.0 * spectrum[1 : harmonics + 1] / spectrum[0].real)

@@ -1,0 +1,112 @@
+"""The model's motion in time, along any motion of the output: a thin use of the oscillator for whole records."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import ParameterError
+from ..reducer import Reducer
+from .oscillator import Oscillator, gauss_times
+from .parameters import FloatArray, ParametricModel
+
+AngleFunction = Callable[[FloatArray], FloatArray]
+"""Output angle q [rad] at times [s], any shape."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class TimeResponse:
+    """Torsional vibration sampled at a constant rate.
+
+    Attributes
+    ----------
+    rate : float
+        Samples per second [Hz].
+    times : ndarray, shape (samples,)
+        [s], from 0.
+    output_angle : ndarray, shape (samples,)
+        Kinematic output angle q [rad].
+    displacement, velocity, acceleration : ndarray, shape (samples,)
+        θ [rad], θ' [rad/s], θ'' [rad/s²].
+    """
+
+    rate: float
+    times: FloatArray
+    output_angle: FloatArray
+    displacement: FloatArray
+    velocity: FloatArray
+    acceleration: FloatArray
+
+    def after(self, time: float) -> "TimeResponse":
+        """Return the part from `time` [s] on; its times start at 0 again."""
+        first = int(np.searchsorted(self.times, time - 0.5 / self.rate))
+        return TimeResponse(
+            rate=self.rate,
+            times=self.times[first:] - self.times[first] if first < self.times.size else self.times[first:],
+            output_angle=self.output_angle[first:],
+            displacement=self.displacement[first:],
+            velocity=self.velocity[first:],
+            acceleration=self.acceleration[first:],
+        )
+
+
+def constant_speed(reducer: Reducer, speed_rpm: float) -> AngleFunction:
+    """Output angle [rad] at a constant wave-generator speed [rpm], 0 at the start."""
+    omega = speed_rpm * 2.0 * np.pi / 60.0 / reducer.reduction
+    return lambda times: omega * times
+
+
+def linear_sweep(reducer: Reducer, start: float, rate: float) -> AngleFunction:
+    """Output angle [rad] of a sweep whose circular-spline line ωo2/2π rises from `start` [Hz] by `rate` [Hz/s]."""
+    cycles_per_radian = reducer.output_orders.circular_spline / (2.0 * np.pi)
+    return lambda times: (start + 0.5 * rate * times) * times / cycles_per_radian
+
+
+def simulate(model: ParametricModel, output_angle: AngleFunction, *, duration: float, rate: float) -> TimeResponse:
+    """Integrate eq. 3 along a motion, starting from the static wind-up at rest.
+
+    Parameters
+    ----------
+    model : ParametricModel
+    output_angle : callable
+        Output angle q [rad] at an array of times [s].
+    duration : float
+        [s]
+    rate : float
+        Samples per second [Hz], which is also the integration step: 2 kHz is good to 1e-5 at a natural frequency
+        of 55 Hz.
+
+    Returns
+    -------
+    TimeResponse
+        `duration * rate` samples, without the end point.
+
+    Raises
+    ------
+    ParameterError
+        If duration or rate is not positive, or the rate does not resolve the natural frequency.
+    """
+    if not (np.isfinite(duration) and np.isfinite(rate) and duration > 0.0 and rate > 0.0):
+        raise ParameterError(f"{duration!r} s at {rate!r} Hz hold no samples; give a duration and a rate above 0")
+    steps = max(1, round(duration * rate) - 1)
+    times = np.arange(steps + 1) / rate
+    between = output_angle(gauss_times(times))
+    inertia = model.dynamics.inertia
+    oscillator = Oscillator(model.dynamics, model.stiffness_fluctuation(between), 1.0 / rate)
+    angle = output_angle(times)
+    start = (float(model.static_deflection(angle[0])), 0.0)
+    displacement, velocity = oscillator.respond(model.torque_at(between) / inertia, start)
+    omega = model.dynamics.angular_frequency
+    acceleration = (
+        model.torque_at(angle) / inertia
+        - 2.0 * model.dynamics.damping_ratio * omega * velocity
+        - omega**2 * (1.0 + model.stiffness_fluctuation(angle)) * displacement
+    )
+    return TimeResponse(
+        rate=rate,
+        times=times,
+        output_angle=angle,
+        displacement=displacement,
+        velocity=velocity,
+        acceleration=acceleration,
+    )

@@ -1,0 +1,150 @@
+"""The static torsional stiffness test bed of section 2.2: load the output at locked wave-generator positions."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from ..errors import ParameterError
+from .parameters import FloatArray, ParametricModel
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StaticTestBed:
+    """The instruments and the loading of a static stiffness test.
+
+    Parameters
+    ----------
+    torque : float
+        Largest torque applied [N·m].
+    load_steps : int
+        Torques from zero (not included) to the largest, evenly spaced.
+    force_arm, dial_arm : float
+        Distances of the force gauge and of the dial indicator from the axis [m].
+    force_resolution : float
+        Smallest step of the force gauge [N].
+    dial_resolution : float
+        Smallest step of the dial indicator [m].
+
+    Raises
+    ------
+    ParameterError
+        If a length, a torque or a number of steps is not positive, or a resolution is negative.
+    """
+
+    torque: float = 40.0
+    load_steps: int = 10
+    force_arm: float = 0.4
+    dial_arm: float = 0.4
+    force_resolution: float = 0.1
+    dial_resolution: float = 1e-6
+
+    def __post_init__(self) -> None:
+        """Refuse a bed that measures nothing."""
+        for name in ("torque", "load_steps", "force_arm", "dial_arm"):
+            value = getattr(self, name)
+            if not (np.isfinite(value) and value > 0):
+                raise ParameterError(f"{name} = {value!r} makes no test bed; give a value above 0")
+        for name in ("force_resolution", "dial_resolution"):
+            value = getattr(self, name)
+            if not (np.isfinite(value) and value >= 0.0):
+                raise ParameterError(f"{name} = {value!r} is no resolution; give 0 for ideal, or a value above it")
+
+    def measure(self, model: ParametricModel, wave_generator_angles: npt.ArrayLike) -> FloatArray:
+        """Measure the stiffness at each position.
+
+        Parameters
+        ----------
+        model : ParametricModel
+        wave_generator_angles : array_like, shape (positions,)
+            Angles at which the wave generator is locked [rad].
+
+        Returns
+        -------
+        ndarray, shape (positions,)
+            Slope dT/dφ [N·m/rad] (eq. 1) of the readings, by least squares.
+        """
+        angles = np.asarray(wave_generator_angles, dtype=np.float64)
+        fluctuation = model.stiffness_fluctuation(angles / model.reducer.reduction)
+        stiffness = model.dynamics.stiffness * (1.0 + fluctuation)
+        torque = self.torque * np.arange(1, self.load_steps + 1) / self.load_steps
+        twist = torque / stiffness[..., None]
+        read_torque = _read(torque / self.force_arm, self.force_resolution) * self.force_arm
+        read_twist = _read(twist * self.dial_arm, self.dial_resolution) / self.dial_arm
+        # Through the origin: both instruments are set to zero without load
+        return np.asarray((read_torque * read_torque).sum() / (read_twist * read_torque).sum(axis=-1))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StiffnessFit:
+    """A curve through static stiffness readings: mean and harmonics of twice a wave-generator revolution.
+
+    Attributes
+    ----------
+    mean : float
+        Kav [N·m/rad].
+    phasors : ndarray of complex, shape (harmonics,)
+        K = mean·(1 + Σ Re(phasor_k exp(2jkφ))).
+    """
+
+    mean: float
+    phasors: tuple[complex, ...]
+
+    def __call__(self, wave_generator_angle: npt.ArrayLike) -> FloatArray:
+        """Fitted stiffness [N·m/rad] at wave-generator angles [rad], any shape."""
+        phi = np.asarray(wave_generator_angle, dtype=np.float64)
+        relative = np.ones(phi.shape)
+        for k, phasor in enumerate(self.phasors, start=1):
+            relative += (phasor * np.exp(2j * k * phi)).real
+        return self.mean * relative
+
+    @property
+    def index(self) -> float:
+        """Index of fluctuation Δ/Kav, a fraction; Δ is half the curve's difference between largest and smallest."""
+        curve = self(np.linspace(0.0, np.pi, 2001))
+        return float((curve.max() - curve.min()) / 2.0 / self.mean)
+
+
+def fit_stiffness(
+    wave_generator_angles: npt.ArrayLike, stiffness: npt.ArrayLike, *, harmonics: int = 2
+) -> StiffnessFit:
+    """Fit mean and harmonics to static stiffness readings by least squares.
+
+    Readings over a wave-generator revolution or two cannot tell the splines' lines apart (that takes half an output
+    revolution); the fit gives their sum.
+
+    Parameters
+    ----------
+    wave_generator_angles, stiffness : array_like, shape (positions,)
+        [rad] and [N·m/rad].
+    harmonics : int
+        Number of harmonics; readings every 30° resolve 2.
+
+    Returns
+    -------
+    StiffnessFit
+
+    Raises
+    ------
+    ParameterError
+        If the positions are too few or too evenly folded to tell the harmonics apart.
+    """
+    phi = np.asarray(wave_generator_angles, dtype=np.float64)
+    values = np.asarray(stiffness, dtype=np.float64)
+    columns = [np.ones(phi.shape)]
+    for k in range(1, harmonics + 1):
+        columns += [np.cos(2 * k * phi), -np.sin(2 * k * phi)]
+    matrix = np.stack(columns, axis=1)
+    solution, _, rank, _ = np.linalg.lstsq(matrix, values, rcond=1e-9)
+    if rank < matrix.shape[1]:
+        raise ParameterError(
+            f"{phi.size} positions cannot tell {harmonics} harmonics apart; measure at more positions or fit fewer"
+        )
+    mean = float(solution[0])
+    pairs = solution[1:].reshape(-1, 2) / mean
+    return StiffnessFit(mean=mean, phasors=tuple(complex(a, b) for a, b in pairs))
+
+
+def _read(value: FloatArray, resolution: float) -> FloatArray:
+    """Return what an instrument of this resolution shows."""
+    return value if resolution == 0.0 else np.rint(value / resolution) * resolution

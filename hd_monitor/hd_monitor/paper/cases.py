@@ -1,0 +1,295 @@
+"""The cases that the figures are computed for, read from YAML: the paper's own, or a user's reducer."""
+
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import yaml
+
+from ..errors import HdMonitorError, ParameterError
+from ..model import ParametricModel, StiffnessSeries, Torque
+from ..model.parameters import FloatArray
+from ..model.pitch_error import PitchErrors
+from ..model.static_test import StaticTestBed
+from ..parameter import flatten
+from ..settings import PARAMETERS, JointSettings
+
+PAPER_FILE = "paper.yaml"
+GRAVITY = 9.80665  # m/s² per g
+
+
+class Range(NamedTuple):
+    """Evenly spaced values from start to stop, both included."""
+
+    start: float
+    stop: float
+    step: float
+
+    @property
+    def values(self) -> FloatArray:
+        """The values, shape (count,)."""
+        return np.asarray(
+            self.start + self.step * np.arange(round((self.stop - self.start) / self.step) + 1), dtype=np.float64
+        )
+
+
+class Sweep(NamedTuple):
+    """A sweep of the circular spline's line ωo2/2π: start and stop [Hz], rate [Hz/s]."""
+
+    start: float
+    stop: float
+    rate: float
+
+    @property
+    def duration(self) -> float:
+        """Time that the sweep takes [s]."""
+        return (self.stop - self.start) / self.rate
+
+
+class PitchErrorCase(NamedTuple):
+    """The circular spline's pitch errors, their tolerance [m] and the stiffening by interference [1/m]."""
+
+    errors: PitchErrors
+    tolerance: float
+    sensitivity: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Case:
+    """A reducer with its defects, and what is to be shown of it.
+
+    Attributes
+    ----------
+    name : str
+    model : ParametricModel
+    sensor_radius : float
+        [m]
+    settings : JointSettings
+        What a monitor of this reducer would be told; it knows nothing of the defects.
+    speed : float
+        Wave-generator speed of the spectra [rpm].
+    speeds : Range
+        Wave-generator speeds of the property curve [rpm].
+    scales : Range
+        Factors on the indexes for the stability chart.
+    sweep : Sweep
+    static_test : StaticTestBed
+    static_step : float
+        Angle between two positions of the static test [rad of the wave generator].
+    pitch_error : PitchErrorCase or None
+        What the circular spline's fluctuation in `model` comes from, if not given directly.
+    """
+
+    name: str
+    model: ParametricModel
+    sensor_radius: float
+    settings: JointSettings
+    speed: float
+    speeds: Range
+    scales: Range
+    sweep: Sweep
+    static_test: StaticTestBed
+    static_step: float
+    pitch_error: PitchErrorCase | None
+
+    def in_g(self, acceleration: Any) -> Any:
+        """Tangential acceleration at the sensor [g] for a torsional acceleration [rad/s²]."""
+        return acceleration * (self.sensor_radius / GRAVITY)
+
+
+class Cases(Mapping[str, Case]):
+    """Cases by name; a missing one is an error that names the file."""
+
+    def __init__(self, cases: Mapping[str, Case], source: str) -> None:
+        self._cases, self._source = dict(cases), source
+
+    def __getitem__(self, name: str) -> Case:
+        """Return the case called `name`."""
+        if name not in self._cases:
+            raise ParameterError(f"{self._source} has no case {name!r}, which a figure needs; has it been edited?")
+        return self._cases[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._cases)
+
+    def __len__(self) -> int:
+        return len(self._cases)
+
+
+def paper_file() -> Path:
+    """Return the installed (or, in a checkout, the source) file with the paper's cases.
+
+    Raises
+    ------
+    HdMonitorError
+        If it is nowhere to be found.
+    """
+    here = Path(__file__)
+    above = [*here.parents, *here.resolve().parents]
+    above += [Path(p) for p in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if p]
+    for folder in above:
+        for part in ("share/hd_monitor/config", "config"):
+            candidate = folder / part / PAPER_FILE
+            if candidate.is_file():
+                return candidate
+    raise HdMonitorError(
+        f"{PAPER_FILE} is not installed in share/hd_monitor/config of any folder above {here.parent}, so the paper's "
+        "cases are unknown; install hd_monitor with its data files, or give the file with --params"
+    )
+
+
+def load_paper_cases(path: Path | None = None) -> Cases:
+    """Read the paper's cases, by default from the installed file."""
+    path = path or paper_file()
+    content = _read(path)
+    cases = content.pop("cases", None)
+    if not isinstance(cases, Mapping):
+        raise ParameterError(f"{path} has no `cases`; it is not a file with the paper's cases")
+    return Cases(
+        {name: _case(f"{path.name}: {name}", _merge(content, own or {})) for name, own in cases.items()}, path.name
+    )
+
+
+def load_own_case(path: Path) -> Case:
+    """Read a user's reducer, from plain YAML or from a ROS parameter file."""
+    content = _read(path)
+    if len(content) == 1:
+        (only,) = content.values()
+        if isinstance(only, Mapping) and "ros__parameters" in only:
+            content = dict(only["ros__parameters"] or {})
+    return _case(path.name, content)
+
+
+def has_cases(path: Path) -> bool:
+    """Whether the file holds cases of the paper rather than one reducer."""
+    return isinstance(_read(path).get("cases"), Mapping)
+
+
+def _read(path: Path) -> dict[str, Any]:
+    try:
+        content = yaml.safe_load(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise HdMonitorError(f"{path} cannot be read: {error.strerror}; check the path") from None
+    except (yaml.YAMLError, UnicodeDecodeError) as error:
+        raise HdMonitorError(f"{path} is no YAML: {' '.join(str(error).split())}") from None
+    if not isinstance(content, Mapping):
+        raise HdMonitorError(f"{path} holds no named values; see config/my_reducer.yaml for an example")
+    return dict(content)
+
+
+def _merge(base: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
+    merged = dict(base)
+    for key, value in over.items():
+        old = merged.get(key)
+        merged[key] = _merge(old, value) if isinstance(old, Mapping) and isinstance(value, Mapping) else value
+    return merged
+
+
+class _Reader:
+    """Takes values out of a flat mapping by their dotted names, so that what is left over can be refused."""
+
+    def __init__(self, source: str, values: Mapping[str, Any]) -> None:
+        self.source = source
+        self.left = flatten(values)
+
+    def number(self, name: str, default: float) -> float:
+        value = self.left.pop(name, default)
+        if isinstance(value, bool) or not isinstance(value, (int, float)) or not np.isfinite(value):
+            raise ParameterError(f"{self.source}: {name} = {value!r} is not a finite number")
+        return float(value)
+
+    def numbers(self, name: str) -> tuple[float, ...]:
+        value = self.left.pop(name, ())
+        if not isinstance(value, Sequence) or isinstance(value, str):
+            raise ParameterError(f"{self.source}: {name} = {value!r} is not a list of numbers, one a harmonic")
+        if any(isinstance(v, bool) or not isinstance(v, (int, float)) for v in value):
+            raise ParameterError(f"{self.source}: {name} = {value!r} has an entry that is not a number")
+        return tuple(float(v) for v in value)
+
+    def triple(self, name: str, parts: tuple[str, str, str], default: tuple[float, float, float]) -> tuple[float, ...]:
+        first, last, step = (self.number(f"{name}.{p}", d) for p, d in zip(parts, default, strict=True))
+        if not (first <= last and step > 0.0):
+            raise ParameterError(
+                f"{self.source}: {name} from {first:g} to {last:g} by {step:g} goes nowhere; "
+                f"{parts[1]} must not be below {parts[0]}, and {parts[2]} must be above 0"
+            )
+        return first, last, step
+
+    def has(self, prefix: str) -> bool:
+        return any(name.startswith(f"{prefix}.") for name in self.left)
+
+
+def _case(source: str, values: Mapping[str, Any]) -> Case:
+    reader = _Reader(source, values)
+    series = {
+        name: StiffnessSeries(reader.numbers(f"stiffness.{name}"), reader.numbers(f"stiffness.{name}_phase"))
+        for name in ("flexspline", "circular_spline")
+    }
+    known = {parameter.name for parameter in PARAMETERS}
+    torque = Torque(
+        mean=float(reader.left.get("load.torque", 10.0)),
+        load_fluctuation=reader.number("load.fluctuation", 0.0),
+        load_phase=reader.number("load.fluctuation_phase", 0.0),
+        load_order=int(reader.number("load.fluctuation_order", 2)),
+        drive_fluctuation=reader.number("load.drive_fluctuation", 0.0),
+        drive_phase=reader.number("load.drive_phase", 0.0),
+    )
+    settings = JointSettings.from_mapping({n: reader.left.pop(n) for n in list(reader.left) if n in known})
+    reducer, dynamics = settings.reducer, settings.dynamics
+    gear = _pitch_error(reader, reducer.circular_spline_teeth)
+    if gear is not None:
+        if series["circular_spline"].beta:
+            raise ParameterError(
+                f"{source}: give stiffness.circular_spline or pitch_error, which determines it, not both"
+            )
+        series["circular_spline"] = gear.errors.stiffness_series(gear.sensitivity)
+    model = ParametricModel(reducer=reducer, dynamics=dynamics, torque=torque, **series)
+    resonance = 60.0 * dynamics.natural_frequency / reducer.circular_spline_order
+    top = 1.8 * resonance
+    case = Case(
+        name=source.rpartition(": ")[2],
+        model=model,
+        sensor_radius=float(settings["input.sensor_radius"]),
+        settings=settings,
+        speed=reader.number("speed", resonance / 2.0),
+        speeds=Range(*reader.triple("speeds", ("start", "stop", "step"), (top / 30.0, top, top / 30.0))),
+        scales=Range(*reader.triple("scales", ("start", "stop", "step"), (0.0, 4.0, 0.2))),
+        sweep=Sweep(
+            *reader.triple(
+                "sweep",
+                ("start", "stop", "rate"),
+                (1.0, 2.2 * dynamics.natural_frequency, 0.6 * (dynamics.natural_frequency / 55.0) ** 2),
+            )
+        ),
+        static_step=np.deg2rad(reader.number("static_test.step", 30.0)),
+        static_test=StaticTestBed(
+            torque=reader.number("static_test.torque", 40.0),
+            force_arm=reader.number("static_test.force_arm", 0.4),
+            dial_arm=reader.number("static_test.dial_arm", 0.4),
+            force_resolution=reader.number("static_test.force_resolution", 0.1),
+            dial_resolution=reader.number("static_test.dial_resolution", 1e-6),
+        ),
+        pitch_error=gear,
+    )
+    if reader.left:
+        raise ParameterError(
+            f"{source}: {', '.join(sorted(reader.left))}: no such value; check the spelling against "
+            "config/my_reducer.yaml"
+        )
+    if case.speed <= 0.0 or case.speeds.start <= 0.0 or case.sweep.start <= 0.0:
+        raise ParameterError(f"{source}: speed, speeds.start and sweep.start must be above 0")
+    return case
+
+
+def _pitch_error(reader: _Reader, teeth: int) -> PitchErrorCase | None:
+    if not reader.has("pitch_error"):
+        return None
+    errors = PitchErrors.of_eccentric_gear(
+        teeth, reader.number("pitch_error.eccentricity", 0.0), scatter=reader.number("pitch_error.scatter", 0.0)
+    )
+    return PitchErrorCase(
+        errors, reader.number("pitch_error.tolerance", np.inf), reader.number("pitch_error.sensitivity", 0.0)
+    )

@@ -1,0 +1,84 @@
+"""The monitor itself, fed with the simulated vibration of a case: what it would say of the paper's drivers."""
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..contract import NANOSECONDS, Block
+from ..errors import HdMonitorError
+from .cases import Case
+from .records import steady_record
+
+if TYPE_CHECKING:
+    from ..assessment import Assessment
+
+SENSOR_NOISE = 0.2
+"""Standard deviation of the noise put on the vibration [rad/s²]: 11 mg at 0.55 m, an ordinary MEMS sensor's."""
+
+OUTPUT_REVOLUTIONS = 4
+_MOTION_RATE = 100.0  # Hz, of the joint states
+_BLOCKS_PER_SECOND = 5
+_SEED = 2021
+
+
+def diagnose(case: Case, speed: float, *, revolutions: int = OUTPUT_REVOLUTIONS) -> "Assessment":
+    """Let a monitor that knows the reducer, but none of its defects, watch a steady run.
+
+    Parameters
+    ----------
+    case : Case
+    speed : float
+        Wave-generator speed [rpm].
+    revolutions : int
+        Output revolutions watched.
+
+    Returns
+    -------
+    Assessment
+        The last one.
+
+    Raises
+    ------
+    HdMonitorError
+        If the run is too short for an assessment.
+    """
+    from ..monitor import Monitor
+
+    record = steady_record(case.model, speed, revolutions)
+    response = record.response
+    noise = np.random.default_rng(_SEED).normal(0.0, SENSOR_NOISE, response.times.size)
+    samples = response.acceleration + noise
+    period = 1.0 / response.rate
+    monitor = Monitor("joint", case.settings)
+
+    motion = np.arange(math.floor(response.times[-1] * _MOTION_RATE) + 1) / _MOTION_RATE
+    omega = 2.0 * math.pi * record.output_frequency
+    angle = response.output_angle[0] + omega * motion
+    stamps = np.rint(motion * NANOSECONDS).astype(np.int64)
+    monitor.add_motion(stamps, angle, np.full(motion.size, omega), np.full(motion.size, np.nan))
+    for number, part in enumerate(
+        np.array_split(np.arange(samples.size), max(1, round(motion[-1] * _BLOCKS_PER_SECOND)))
+    ):
+        start = round(float(response.times[part[0]]) * NANOSECONDS)
+        monitor.add_block(Block(start, period, number, samples[part]))
+    assessment = monitor.finish()
+    if assessment is None:
+        raise HdMonitorError(
+            f"{revolutions} output revolutions at {speed:g} rpm last {response.times[-1]:.2f} s, too short for "
+            "the monitor; "
+            "watch more of them"
+        )
+    return assessment
+
+
+def verdict_words(assessment: "Assessment") -> str:
+    """The part named, its level, and both indexes with their standard deviations."""
+    verdict, found = assessment.verdict, assessment.identification
+    words = f"{verdict.component.value} ({verdict.level.name})"
+    if found is None:
+        return words
+    return words + "; " + ", ".join(
+        f"{name} {index:.2%} ± {std:.2%}"
+        for name, index, std in zip(("circular spline", "flexspline"), found.index, found.index_std, strict=True)
+    )  # fmt: skip

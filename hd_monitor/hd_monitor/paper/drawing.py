@@ -1,0 +1,131 @@
+"""Draws panels with matplotlib; the only module here that imports it."""
+
+import io
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from .exhibit import Curve, Exhibit, Mark, Panel, Surface
+
+_WIDTH, _HEIGHT = 5.6, 3.8  # inches of a panel
+_DPI = 110
+_COLOURS = ("#1f5fa8", "#d1603d", "#3f8f5b", "#8a5aa8", "#7a6a3a", "#4f4f4f")
+_PER_ROW = 2
+
+
+def figure_of(exhibit: Exhibit) -> Figure:
+    """Draw an exhibit's panels side by side."""
+    count = len(exhibit.panels)
+    columns = min(count, _PER_ROW)
+    rows = -(-count // columns)
+    width = _HEIGHT * 1.15 if all(panel.equal for panel in exhibit.panels) else _WIDTH * (1.25 if count == 1 else 1.0)
+    figure = Figure(figsize=(width * columns, _HEIGHT * rows), layout="constrained")
+    FigureCanvasAgg(figure)
+    grid = figure.add_gridspec(rows, columns)
+    for number, panel in enumerate(exhibit.panels):
+        row, column = divmod(number, columns)
+        alone = number == count - 1 and column == 0
+        _draw(figure.add_subplot(grid[row, :] if alone else grid[row, column]), panel, figure)
+    figure.suptitle(f"{exhibit.id}  {exhibit.title}", fontsize=11, fontweight="bold")
+    return figure
+
+
+def png(exhibit: Exhibit) -> bytes:
+    """Return the drawing as PNG."""
+    buffer = io.BytesIO()
+    figure_of(exhibit).savefig(buffer, format="png", dpi=_DPI)
+    return buffer.getvalue()
+
+
+def write_png(exhibit: Exhibit, folder: Path) -> Path:
+    """Write the drawing into a folder, named after the exhibit."""
+    path = folder / f"{exhibit.id}.png"
+    path.write_bytes(png(exhibit))
+    return path
+
+
+def _draw(axes: Axes, panel: Panel, figure: Figure) -> None:
+    axes.set_title(panel.title, fontsize=10)
+    axes.set_xlabel(panel.x_label, fontsize=9)
+    axes.set_ylabel(panel.y_label, fontsize=9)
+    axes.tick_params(labelsize=8)
+    axes.grid(visible=True, color="#e4e4e4", linewidth=0.6)
+    axes.set_axisbelow(True)
+    if panel.surface is not None:
+        _draw_surface(axes, panel.surface, figure)
+    for number, curve in enumerate(panel.curves):
+        _draw_curve(axes, curve, _COLOURS[number % len(_COLOURS)])
+    if panel.log_y:
+        axes.set_yscale("log")
+    if panel.x_range is not None:
+        axes.set_xlim(*panel.x_range)
+    elif panel.surface is None and panel.curves and not panel.equal:
+        axes.margins(x=0.02)
+    if panel.y_range is not None:
+        axes.set_ylim(*panel.y_range)
+    elif any(mark.axis == "x" for mark in panel.marks) and panel.surface is None:
+        _make_room(axes, log=panel.log_y)
+    if panel.equal:
+        axes.set_box_aspect(1.0)
+    for mark in panel.marks:
+        _draw_mark(axes, mark, on_surface=panel.surface is not None)
+    if any(curve.label for curve in panel.curves):
+        axes.legend(fontsize=8, frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.15), ncols=3)
+
+
+def _draw_curve(axes: Axes, curve: Curve, colour: str) -> None:
+    label = curve.label or "_"  # matplotlib leaves labels that start so out of the legend
+    if curve.style == "stems":
+        axes.vlines(curve.x, 0.0, curve.y, color=colour, label=label, linewidth=6.0, alpha=0.45)
+    elif curve.style == "points":
+        axes.plot(curve.x, curve.y, "o", color=colour, markersize=3.5, label=label)
+    elif curve.style == "dotted points":
+        axes.plot(curve.x, curve.y, ":", marker="*", color=colour, linewidth=1.0, markersize=6, label=label)
+    elif curve.style == "fine":
+        axes.plot(curve.x, curve.y, "-", color=colour, linewidth=0.4, label=label)
+    else:
+        axes.plot(curve.x, curve.y, "--" if curve.style == "dashed" else "-", color=colour, linewidth=1.2, label=label)
+
+
+def _draw_surface(axes: Axes, surface: Surface, figure: Figure) -> None:
+    largest = float(np.abs(surface.values).max())
+    image = axes.pcolormesh(
+        surface.x,
+        surface.y,
+        surface.values,
+        cmap="RdBu_r",
+        vmin=-largest,
+        vmax=largest,
+        shading="gouraud",
+        rasterized=True,
+    )
+    figure.colorbar(image, ax=axes, label=surface.label)
+    if surface.values.min() < surface.level < surface.values.max():
+        axes.contour(surface.x, surface.y, surface.values, levels=[surface.level], colors="black", linewidths=1.4)
+
+
+def _make_room(axes: Axes, *, log: bool) -> None:
+    """Leave space for the marks' labels above the curves."""
+    low, high = axes.get_ylim()
+    axes.set_ylim(low, high * (high / low) ** 0.25 if log else high + 0.25 * (high - low))
+
+
+def _draw_mark(axes: Axes, mark: Mark, *, on_surface: bool) -> None:
+    colour = "#303030" if on_surface else "#707070"
+    box = {"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 1.0} if on_surface else None
+    if mark.axis == "x":
+        axes.axvline(mark.at, color=colour, linewidth=0.8, linestyle=":")
+        axes.annotate(
+            mark.label, (mark.at, 0.98), xycoords=("data", "axes fraction"), xytext=(-2, 0), textcoords="offset points",
+            rotation=90, fontsize=7.5, color=colour, ha="right", va="top", bbox=box,
+        )  # fmt: skip
+    else:
+        axes.axhline(mark.at, color=colour, linewidth=0.8, linestyle=":")
+        along = {"left": 0.01, "center": 0.5, "right": 0.99}[mark.place]
+        axes.annotate(
+            mark.label, (along, mark.at), xycoords=("axes fraction", "data"), xytext=(0, -2 if mark.below else 2),
+            textcoords="offset points", fontsize=7.5, color=colour, ha=mark.place, va="top" if mark.below else "bottom",
+        )  # fmt: skip

@@ -1,0 +1,85 @@
+"""What a figure's module hands over: data to draw and claims to print. Nothing here knows how to draw."""
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from .claim import Claim
+
+FloatArray = npt.NDArray[np.float64]
+Style = Literal["line", "fine", "dashed", "points", "stems", "dotted points"]
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Curve:
+    """One curve: x and y of equal shape (points,), NaN where it breaks."""
+
+    x: FloatArray
+    y: FloatArray
+    label: str = ""
+    style: Style = "line"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Mark:
+    """A labelled place on the x axis, or a level on the y axis with its label at one place along it."""
+
+    at: float
+    label: str
+    axis: Literal["x", "y"] = "x"
+    place: Literal["left", "center", "right"] = "left"
+    below: bool = False
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Surface:
+    """Values over a grid, shape (y, x), with the contour at `level` drawn."""
+
+    x: FloatArray
+    y: FloatArray
+    values: FloatArray
+    label: str
+    level: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Panel:
+    """One pair of axes; labels carry the units."""
+
+    title: str
+    x_label: str
+    y_label: str
+    curves: tuple[Curve, ...] = ()
+    marks: tuple[Mark, ...] = ()
+    surface: Surface | None = None
+    log_y: bool = False
+    x_range: tuple[float, float] | None = None
+    y_range: tuple[float, float] | None = None
+    equal: bool = False
+    """Whether the panel is drawn as a square, as a phase trace is."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Exhibit:
+    """A figure, table or equation of the paper, recomputed.
+
+    Attributes
+    ----------
+    id, title : str
+        As in ``F13c``, and the paper's own caption in short.
+    caption : str
+        What is drawn and with which parameters.
+    panels : tuple of Panel
+    claims : tuple of Claim
+    facts : tuple of (str, str)
+        Results to print that no claim is held against: (name, value with unit).
+    """
+
+    id: str
+    title: str
+    caption: str
+    panels: tuple[Panel, ...] = ()
+    claims: tuple[Claim, ...] = ()
+    facts: tuple[tuple[str, str], ...] = field(default=())

@@ -1,0 +1,55 @@
+"""One self-contained HTML page: the claims' table and the figures."""
+
+import base64
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+
+from .claim import Outcome
+from .exhibit import Exhibit
+from .printed import CONTRADICTIONS
+from .table import summary
+
+PAGE = "index.html"
+
+
+def page(exhibits: Sequence[Exhibit], pictures: Mapping[str, bytes], *, heading: str, command: str) -> str:
+    """Fill in the page.
+
+    Parameters
+    ----------
+    exhibits : sequence of Exhibit
+    pictures : mapping of str to bytes
+        PNG by exhibit.
+    heading : str
+    command : str
+        The command that makes this page again.
+    """
+    claims = [claim for exhibit in exhibits for claim in exhibit.claims]
+    environment = Environment(
+        loader=PackageLoader("hd_monitor.paper", "."), autoescape=True, undefined=StrictUndefined, trim_blocks=True
+    )
+    return environment.get_template("page.html.j2").render(
+        heading=heading,
+        command=command,
+        exhibits=exhibits,
+        claims=claims,
+        summary=summary(claims),
+        contradictions=CONTRADICTIONS if claims else (),
+        pictures={name: base64.b64encode(data).decode("ascii") for name, data in pictures.items()},
+        classes={Outcome.PASS: "pass", Outcome.FAIL: "fail", Outcome.CONTRADICTION: "contradiction"},
+    )
+
+
+def write_report(exhibits: Sequence[Exhibit], folder: Path, *, heading: str, command: str) -> Path:
+    """Write the figures as PNG and the page into a folder, which is made if it is not there; return the page."""
+    from .drawing import png
+
+    folder.mkdir(parents=True, exist_ok=True)
+    pictures = {exhibit.id: png(exhibit) for exhibit in exhibits if exhibit.panels}
+    for name, data in pictures.items():
+        (folder / f"{name}.png").write_bytes(data)
+    path = folder / PAGE
+    path.write_text(page(exhibits, pictures, heading=heading, command=command), encoding="utf-8")
+    return path

@@ -1,0 +1,109 @@
+"""What Gu, Tong, Huang and Li (2021) print: the only place where the paper's own numbers stand.
+
+Nothing computed may come from here; figures compute from the cases (``config/paper.yaml``) and are held against this.
+"""
+
+from typing import NamedTuple
+
+
+class Printed(NamedTuple):
+    """A printed value: where it stands, the value in `unit`, and its wording where it is more than a number."""
+
+    where: str
+    value: float
+    unit: str = ""
+    wording: str = ""
+
+    def __str__(self) -> str:
+        """Return the value as the claim table shows it."""
+        return self.wording or f"{self.value:g} {self.unit}".strip()
+
+
+TABLE_1 = {"flexspline": (0.05, 0.03, 0.02), "circular_spline": (0.06, 0.04, 0.02)}
+
+FLEXSPLINE_TEETH = Printed("figure 4", 160)
+CIRCULAR_SPLINE_TEETH = Printed("figure 4", 162)
+CIRCULAR_SPLINE_CYCLES = Printed("section 2.1, case 1", 2, "", "2 per camshaft cycle")
+FLEXSPLINE_CYCLES = Printed(
+    "section 2.1, case 2", 2 + 4 / 160, "", "“two times and two teeth” per camshaft cycle: 2 + 2·2/160 = 2.025"
+)
+STATIC_INDEX = Printed("section 2.2", 0.082, "", "8.2 %")
+STATIC_MEAN_STIFFNESS = Printed("section 2.2", 243.5, "N·m/rad")
+INERTIA = Printed("section 4", 0.29, "kg·m²")
+NATURAL_FREQUENCY = Printed("section 3.2", 55.0, "Hz")
+FLEXSPLINE_LINE = Printed("section 3.2", 25.3125, "Hz")
+CIRCULAR_SPLINE_LINE = Printed("section 3.2", 25.0, "Hz")
+LOAD_FREQUENCY = Printed("section 3.3", 0.3125, "rad/s")
+
+SWEEP_SINGLE_PEAK = Printed("section 3.4.1", 1.0, "", "below 1")
+SWEEP_SINGLE_DAMPED_PEAK = Printed("section 3.4.1", 1e-3, "", "under 1e-3")
+SWEEP_DOUBLE_PEAK = Printed("section 3.4.2", 1e1, "", "exceeds 1e1")
+SWEEP_PEAKS = Printed("section 3.4.1", 3, "", "three: principal instability, resonance, 1/2 harmonic resonance")
+
+RIG_SPEED = Printed("figure 13", 850.0, "rpm")
+RIG_DOMINANT = Printed("section 5", 54.0, "Hz", "4ωo1 ≈ 54 Hz")
+RIG_FAST_SPEED = Printed("figure 15", 1700.0, "rpm")
+RIG_FAST_DOMINANT = Printed("section 5", 54.0, "Hz", "2ωo1 ≈ 54 Hz")
+LOADED_LINES = {"2ωo2 − ωo1": 17.19, "ωo2": 17.01, "ωo1": 16.88, "2ωo1 − ωo2": 16.76}  # Hz, figure 14
+CURVE_PEAKS = Printed("section 5", 3, "", "three: instability, resonance, 1/2 harmonic resonance")
+SAMPLE_PEAK_SPEED = Printed("section 6", 1300.0, "rpm")
+PEAK_REDUCTION = Printed("section 6", 0.5, "", "one half of the original peak")
+INDEX_REDUCTION = Printed("section 6", 0.5, "", "half of the original fluctuation")
+
+
+class Contradiction(NamedTuple):
+    """A place where the paper contradicts itself, or leaves out what its result depends on, and what is done here."""
+
+    where: str
+    printed: str
+    problem: str
+    convention: str
+
+
+CONTRADICTIONS = (
+    Contradiction(
+        "figures 13b, 15",
+        "“4ωo1” at 850 rpm and “2ωo1” at 1700 rpm, both about 54 Hz",
+        "with the paper's own ωo2 = 2n/60 these would be 113 Hz; the labels count cycles of the shaft, n/60",
+        "pairs are numbered by k of ωo = 2n/60: k = 2 at 850 rpm and k = 1 at 1700 rpm",
+    ),
+    Contradiction(
+        "figure 14",
+        "ωo1 = 16.88 Hz below ωo2 = 17.01 Hz",
+        "by the definitions ωo1 = ωo2·z2/z1 is the higher one, and no whole-tooth pair near 160 with z2 − z1 = 2 "
+        "has the "
+        "printed ratio 1.0077",
+        "the lower line is ωo2 (circular spline); the group is shown at the printed 16.88 Hz, its spacing "
+        "follows from the teeth",
+    ),
+    Contradiction(
+        "section 3.3",
+        "load fluctuation ωp2 = 0.3125 rad/s",
+        "the lines of figure 9 need ωo1 − ωo2 = 0.3125 Hz at 25 Hz",
+        "0.3125 Hz: twice per output revolution",
+    ),
+    Contradiction(
+        "section 3.3",
+        "second group 4ωo2 − 2ωo1, 2ωo2, 2ωo1, 4ωo1 − 2ωo2, 2Δf apart",
+        "a load at ωo1 − ωo2 shifts every line by Δf, not by 2Δf",
+        "the lines that the model gives: 3ωo2 − ωo1, 2ωo2, ωo1 + ωo2, 2ωo1, 3ωo1 − ωo2",
+    ),
+    Contradiction(
+        "section 2.2",
+        "Kav = 243.5 N·m/rad",
+        "with J = 0.29 kg·m² it gives 4.6 Hz, not fn = 55 Hz",
+        "the model is given by fn, ζ and J; Kav = J·(2π·fn)²",
+    ),
+    Contradiction(
+        "figures 16, 18",
+        "three peaks over 200 to 3000 rpm: instability, resonance, 1/2 harmonic resonance",
+        "with fn near 55 Hz they lie at ωo2 = 2fn (3300 rpm, beyond the figure), fn (1650 rpm) and fn/2 (825 rpm)",
+        "each is looked for where the model has it; section 6's peak at 1300 rpm belongs to a softer driver",
+    ),
+    Contradiction(
+        "figures 10, 11",
+        "peaks of a sweep without its rate",
+        "where β > 4ζ the vibration grows as long as the sweep dwells there, from whatever was there before",
+        "0.6 Hz/s, stated beside the figures; peaks are compared in decades, and SR shows the rates for which all hold",
+    ),
+)

@@ -1,0 +1,50 @@
+"""The claims as a table for a terminal."""
+
+import textwrap
+from collections.abc import Iterable
+
+from .claim import Claim, Outcome
+from .exhibit import Exhibit
+
+_TAGS = {Outcome.PASS: "pass", Outcome.FAIL: "FAIL", Outcome.CONTRADICTION: "contradiction"}
+_INDENT = " " * 21
+
+
+def claim_lines(claim: Claim, width: int = 100) -> list[str]:
+    """One claim: what is claimed, the paper's value, ours, and the note."""
+    head = f"{claim.id:6s}{_TAGS[claim.outcome]:15s}"
+    lines = textwrap.wrap(claim.statement, width, initial_indent=head, subsequent_indent=_INDENT)
+    for name, text in (("paper", claim.paper), ("ours", claim.ours), ("note", claim.note)):
+        if text:
+            lines += textwrap.wrap(
+                f"{name + ':':7s}{text}", width, initial_indent=_INDENT, subsequent_indent=_INDENT + " " * 7
+            )
+    return lines
+
+
+def claim_table(exhibits: Iterable[Exhibit], width: int = 100) -> str:
+    """Every claim below the other, then the counts."""
+    claims = [claim for exhibit in exhibits for claim in exhibit.claims]
+    lines = [line for claim in claims for line in claim_lines(claim, width)]
+    return "\n".join([*lines, "", summary(claims)]) if claims else ""
+
+
+def fact_table(exhibits: Iterable[Exhibit]) -> str:
+    """Results that no claim is held against, by exhibit."""
+    lines = []
+    for exhibit in exhibits:
+        if exhibit.facts:
+            lines.append(f"{exhibit.id}  {exhibit.title}")
+            lines += [f"    {name}: {value}" for name, value in exhibit.facts]
+    return "\n".join(lines)
+
+
+def summary(claims: Iterable[Claim]) -> str:
+    """How many claims have which outcome, in a sentence."""
+    outcomes = [claim.outcome for claim in claims]
+    passed, failed, contradicting = (outcomes.count(o) for o in (Outcome.PASS, Outcome.FAIL, Outcome.CONTRADICTION))
+    return (
+        f"{len(outcomes)} claims: {passed} pass, {contradicting} where the paper contradicts itself (convention "
+        "named), "
+        f"{failed} fail"
+    )

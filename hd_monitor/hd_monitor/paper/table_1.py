@@ -1,0 +1,58 @@
+"""Table 1: the indexes, recovered from the simulated vibration alone."""
+
+import numpy as np
+
+from . import printed
+from .cases import Cases
+from .claim import Claim
+from .diagnosis import SENSOR_NOISE, diagnose
+from .exhibit import Curve, Exhibit, Panel
+
+_LARGEST_ERROR = 0.005  # of the mean stiffness
+
+
+def table_1(cases: Cases) -> Exhibit:
+    """Let the monitor identify Table 1's indexes from acceleration and angle."""
+    case = cases["table_1"]
+    assessment = diagnose(case, case.speed)
+    found = assessment.identification
+    claims, curves = [], []
+    for row, (name, values) in enumerate(printed.TABLE_1.items(), start=1):
+        phasors = np.zeros(0) if found is None else getattr(found, name)
+        measured = np.abs(phasors)[: len(values)]
+        ok = measured.size == len(values) and float(np.abs(measured - values).max()) < _LARGEST_ERROR
+        symbols = ", ".join(f"β{row}{k}" for k in range(1, len(values) + 1))
+        claims.append(
+            Claim(
+                id="T1",
+                statement=f"{symbols} ({name.replace('_', ' ')}), identified from the vibration",
+                paper=", ".join(f"{v:g}" for v in values),
+                ours=", ".join(f"{v:.4f}" for v in measured) or "nothing identified",
+                passed=ok,
+                note=f"The monitor knows teeth, fn, ζ, J and M0 and nothing of the indexes; sensor noise "
+                f"{SENSOR_NOISE:g} rad/s².",
+            )
+        )
+        k = np.arange(1.0, len(values) + 1.0)
+        shift = 0.06 * (2 * row - 3)
+        curves.append(
+            Curve(x=k + shift, y=np.asarray(values), label=f"{name.replace('_', ' ')}, printed", style="stems")
+        )
+        if measured.size == len(values):
+            curves.append(Curve(x=k + shift, y=measured, label=f"{name.replace('_', ' ')}, identified", style="points"))
+    return Exhibit(
+        id="T1",
+        title="Index values of the stiffness fluctuation",
+        caption=f"Simulated at {case.speed:g} rpm, identified by the monitor from acceleration and joint angle.",
+        panels=(
+            Panel(
+                title="Table 1",
+                x_label="harmonic",
+                y_label="index β",
+                curves=tuple(curves),
+                x_range=(0.5, 3.5),
+                y_range=(0.0, 0.075),
+            ),
+        ),
+        claims=tuple(claims),
+    )
