@@ -18,7 +18,7 @@ COMMANDS = {
     "identify": ("hd_monitor.cli.identify", "estimate the stiffness indexes, fn and ζ from a recorded run"),
     "paper": ("hd_monitor.cli.paper", "reproduce every figure, table and claim of the source paper"),
 }
-"""Subcommand: (module, help). A module is imported only when its command runs, so that no extra is needed for others."""
+"""Subcommand: (module, help). A module is imported only when its command runs, so that none needs another's extras."""
 
 
 class Command(Protocol):
@@ -61,10 +61,21 @@ def main(argv: Sequence[str] | None = None) -> int:
         return 130
 
 
+_SELF_MADE = {"hd_monitor", "hd_sim_node"}
+_ROS = {"rclpy", "rcl_interfaces", "builtin_interfaces", "lifecycle_msgs", "std_srvs"}
+
+
 def _missing(error: ModuleNotFoundError) -> str:
+    """Say what is not installed and how to get it."""
     name = (error.name or "").split(".")[0]
-    extra = "ros" if name in {"rclpy", "diagnostic_msgs", "sensor_msgs", "std_msgs"} else "offline"
-    return f"needs the Python package {name!r}, which is not installed; pip install 'hd-monitor[{extra}]'"
+    if name in _SELF_MADE:
+        return f"needs the package {error.name!r}, which is not installed; build or install this repository as a whole"
+    if name in _ROS or name.endswith("_msgs"):
+        return (
+            f"needs ROS 2 ({name} is missing): source your ROS installation, or run pip install '.[ros]' "
+            "in the checkout"
+        )
+    return f"needs the Python package {name!r}, which is not installed: run pip install '.[offline]' in the checkout"
 
 
 if __name__ == "__main__":

@@ -53,7 +53,7 @@ class JointParameters:
             node.undeclare_parameter(name)
         if strangers:
             node.get_logger().warning(
-                f"ignoring {', '.join(strangers)}: no parameters of this node; right if the file is shared with others, "
+                f"ignoring {', '.join(strangers)}: no parameters of this node; right if others share the file, "
                 "else check the spelling"
             )
         self.settings = split_joints(given)

@@ -1,0 +1,147 @@
+"""What the demo shows: a small picture redrawn in place on a terminal, plain lines anywhere else."""
+
+import os
+import shutil
+import textwrap
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TextIO
+
+LEVELS = ("OK", "WARN", "ERROR")
+_COLOURS = {"OK": "\x1b[32m", "WARN": "\x1b[33m", "ERROR": "\x1b[31m"}
+_PLAIN_STEP = 0.1  # of the programme, between two plain lines that say nothing new
+_BAR = 30
+_SPLINES = (("flexspline", "flexspline index"), ("circular spline", "circular spline index"))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class View:
+    """A status as it came from the topic.
+
+    Attributes
+    ----------
+    name, message, hardware_id : str
+    level : int
+    values : mapping of str to str
+    """
+
+    name: str
+    level: int
+    message: str
+    hardware_id: str
+    values: Mapping[str, str]
+
+    @property
+    def word(self) -> str:
+        """Its level as a word."""
+        return LEVELS[self.level] if self.level < len(LEVELS) else f"level {self.level}"
+
+    def number(self, key: str) -> float | None:
+        """Return the value of a key as a number; None if it is none."""
+        try:
+            return float(self.values[key])
+        except (KeyError, ValueError):
+            return None
+
+    def percent(self, key: str) -> str:
+        """Write an index with its standard deviation."""
+        value, std = self.number(f"{key} (%)"), self.number(f"{key} std (%)")
+        if value is None or std is None:
+            return "unknown"
+        return f"{value:.2f} ± {std:.2f} %" if std >= 0.005 else f"{value:.2f} ± <0.01 %"
+
+
+class Screen:
+    """Shows progress and the evolving verdict.
+
+    Parameters
+    ----------
+    out : text stream
+    plain : bool
+        Lines even on a terminal.
+    """
+
+    def __init__(self, out: TextIO, *, plain: bool = False) -> None:
+        self._out = out
+        self._redraws = out.isatty() and not plain and os.environ.get("TERM") != "dumb"
+        self._coloured = self._redraws and "NO_COLOR" not in os.environ
+        self._drawn = 0
+        self._shown: tuple[str, str] | None = None
+        self._next_line = 0.0
+        unicode = (out.encoding or "").lower().startswith("utf")
+        self._full, self._empty = ("█", "░") if unicode else ("#", ".")
+
+    def line(self, text: str = "") -> None:
+        """Print a line that stays."""
+        self._clear()
+        print(text, file=self._out, flush=True)
+
+    def paragraph(self, name: str, text: str) -> None:
+        """Print a named text that stays, folded to the terminal's width."""
+        self._clear()
+        width = max(40, shutil.get_terminal_size((120, 24)).columns - 20)
+        for start, part in zip((f"  {name:18}", *[" " * 20] * len(text)), textwrap.wrap(text, width), strict=False):
+            print(f"{start}{part}", file=self._out, flush=True)
+
+    def update(self, view: View, progress: float) -> None:
+        """Show a status; `progress` runs from 0 to 1."""
+        progress = min(max(progress, 0.0), 1.0)
+        if self._redraws:
+            self._clear()
+            lines = self._picture(view, progress)
+            print("\n".join(lines), file=self._out, flush=True)
+            self._drawn = len(lines)
+            return
+        component = view.values.get("component", "?")
+        key = (component, view.word)
+        if key != self._shown or progress >= self._next_line:
+            self._next_line = progress + _PLAIN_STEP
+            line = f"{progress:4.0%}  {self._speed(view)}  {view.word:5}  {component:15}  "
+            indexes = [f"{name} {view.percent(index)}" for name, index in _SPLINES]
+            if key != self._shown and component == "undetermined":
+                indexes = [view.message]
+            print(line + ", ".join(indexes), file=self._out, flush=True)
+            self._shown = key
+
+    def colour(self, word: str) -> str:
+        """Write a level's word in its colour, where there are colours."""
+        return f"{_COLOURS[word]}{word}\x1b[0m" if self._coloured and word in _COLOURS else word
+
+    def _clear(self) -> None:
+        if self._drawn:
+            print(f"\x1b[{self._drawn}A\x1b[J", end="", file=self._out)
+            self._drawn = 0
+
+    @staticmethod
+    def _speed(view: View) -> str:
+        rpm = view.number("speed (rpm)")
+        return "   - rpm" if rpm is None else f"{rpm:4.0f} rpm"
+
+    def _bar(self, part: float, width: int = _BAR) -> str:
+        full = round(min(max(part, 0.0), 1.0) * width)
+        return self._full * full + self._empty * (width - full)
+
+    def _picture(self, view: View, progress: float) -> list[str]:
+        width = max(40, shutil.get_terminal_size().columns) - 1
+        warn, error = view.number("warn limit (%)"), view.number("error limit (%)")
+        top = 2.0 * (error or 8.0)
+        rms = view.number("rms (m/s^2)")
+        lines = [
+            f"  programme        {self._bar(progress)}  {progress:4.0%}   {self._speed(view)}"
+            + ("" if rms is None else f"   rms {rms:.2f} m/s²")
+        ]
+        for name, key in _SPLINES:
+            index = view.number(f"{key} (%)") or 0.0
+            lines.append(f"  {name:15}  {self._bar(index / top)}  {view.percent(key)}")
+        if warn is not None and error is not None:
+            scale = [" "] * (_BAR + 24)
+            for mark, value in (("warn", warn), ("error", error)):
+                label = f"^ {mark} {value:.0f} %"
+                place = round(value / top * _BAR)
+                scale[place : place + len(label)] = label
+            lines.append(f"  {'':15}  {''.join(scale).rstrip()}")
+        lines = [line[:width] for line in lines]
+        text = textwrap.wrap(view.message, width - 11)[:4] or [""]
+        lines.append(f"  {self.colour(view.word)}{'':{6 - len(view.word)}} {text[0]}")
+        lines += [f"         {more}" for more in text[1:]]
+        return lines
