@@ -1,0 +1,272 @@
+"""The monitor of one joint: fed stamped arrays, it yields assessments. The node, the replay and the tests run this."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from .acquisition.recorder import Harvest, Recorder
+from .acquisition.stream import StampedBuffer
+from .analysis.rms_curve import RmsAccumulator
+from .analysis.steady import SteadyStretch
+from .assessment import Assessment
+from .contract import NANOSECONDS, Block
+from .diagnosis.judge import Judge, Limits
+from .diagnosis.verdict import Component, FaultCode, Level, Verdict
+from .identification.identifier import Identifier
+from .identification.result import Identification
+from .identification.sensorless import SensorlessIdentifier
+from .settings import JointSettings
+from .timeline import Timeline, Window
+
+FloatArray = npt.NDArray[np.float64]
+
+VIBRATION = "the vibration signal"
+MOTION = "joint states"
+_SLOW_DEGREE = 5  # of the polynomial that takes gravity and rigid motion off a second of an IMU's signal
+
+
+class Monitor:
+    """Watches one reducer.
+
+    Parameters
+    ----------
+    joint : str
+        Name of the joint, for messages.
+    settings : JointSettings
+
+    Notes
+    -----
+    Every whole ``analysis.period`` of the message stamps is assessed once, as soon as all inputs are complete up to
+    its end. The result depends on the messages alone: neither on how they are grouped into calls, nor on how those of
+    different topics interleave, nor on any clock.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> monitor = Monitor("joint", JointSettings.from_mapping())
+    >>> t = np.arange(0, 3_000_000_000, 10_000_000)
+    >>> monitor.add_motion(t, 0.1e-9 * t, np.full(t.size, 0.1), np.full(t.size, 10.0))
+    >>> monitor.advance()
+    []
+    """
+
+    def __init__(self, joint: str, settings: JointSettings) -> None:
+        self.joint = joint
+        self.settings = settings
+        self._reducer = settings.reducer
+        self._rpm = self._reducer.reduction * 60.0 / math.tau
+        self._radius: float = settings["input.sensor_radius"]
+        self._period = round(settings["analysis.period"] * NANOSECONDS)
+        self._timeout = round(settings["input.timeout"] * NANOSECONDS)
+        self._judge = Judge(Limits.from_settings(settings))
+        self._vibration = StampedBuffer(1)
+        self._motion = StampedBuffer(3)
+        needed = (self._motion,) if settings.sensorless else (self._vibration, self._motion)
+        self._timeline = Timeline(needed, self._period, self._timeout)
+        self._recorder = Recorder(settings)
+        self._sequence: int | None = None
+        self._seen: dict[str, int] = {}
+        self._latest: Assessment | None = None
+        self._begin_evidence()
+
+    def _begin_evidence(self) -> None:
+        settings = self.settings
+        self._rms = RmsAccumulator(settings["analysis.rms_bin_width"])
+        self._steady = SteadyStretch(self._reducer, settings["analysis.minimum_speed"])
+        self._identifier: Identifier | SensorlessIdentifier = (
+            SensorlessIdentifier(settings) if settings.sensorless else Identifier(settings)
+        )
+
+    # Feeding -------------------------------------------------------------------------------------------------------
+
+    def add_vibration(self, stamps: npt.ArrayLike, values: npt.ArrayLike) -> None:
+        """Add single samples of θ'' [rad/s²] with their stamps [ns], both of shape (N,), in the order they came."""
+        self._vibration.add(np.asarray(stamps, dtype=np.int64), np.asarray(values, dtype=np.float64).reshape(-1, 1))
+
+    def add_block(self, block: Block) -> None:
+        """Add a block of samples of θ''; one whose number has just been seen is a duplicate and is dropped."""
+        if block.sequence == self._sequence:
+            self._recorder.count(duplicates=len(block.samples), last_fault=f"block {block.sequence} came twice")
+            return
+        self._sequence = block.sequence
+        offsets = np.rint(np.arange(len(block.samples)) * (block.period * NANOSECONDS)).astype(np.int64)
+        self.add_vibration(block.stamp + offsets, block.samples)
+
+    def add_motion(
+        self, stamps: npt.ArrayLike, position: npt.ArrayLike, velocity: npt.ArrayLike, effort: npt.ArrayLike
+    ) -> None:
+        """Add joint states, all of shape (N,), in the order they came.
+
+        Stamps [ns], output-side position [rad], velocity [rad/s] and effort [N·m]; NaN where a message lacks one.
+        """
+        rows = np.column_stack([np.asarray(column, dtype=np.float64) for column in (position, velocity, effort)])
+        self._motion.add(np.asarray(stamps, dtype=np.int64), rows)
+
+    def reject(self, reason: str) -> None:
+        """Note a message that could not be used, with the reason; it shows in every status."""
+        self._recorder.count(rejected=1, last_fault=reason)
+
+    # Results -------------------------------------------------------------------------------------------------------
+
+    @property
+    def latest(self) -> Assessment | None:
+        """The newest assessment, if any."""
+        return self._latest
+
+    def advance(self) -> list[Assessment]:
+        """Assess every period that has become complete; oldest first."""
+        done = []
+        while (window := self._timeline.next()) is not None:
+            done.append(self._assess(window))
+        return done
+
+    def finish(self) -> Assessment | None:
+        """Return what a node would show at the end of the data; a bag shorter than a period is assessed as it is."""
+        self.advance()
+        if self._latest is None:
+            while (window := self._timeline.rest()) is not None:
+                self._assess(window)
+        return self._latest
+
+    def silence(self, now: int) -> Assessment:
+        """Say that nothing came for ``input.timeout`` until `now` [ns] by the caller's clock; the evidence is kept."""
+        missing = [name for name in self._needed_names() if name not in self._seen]
+        reason = (
+            f"No {' and no '.join(missing)} received yet"
+            if missing
+            else f"No new data for {self._timeout / NANOSECONDS:g} s"
+        )
+        return self._pack(
+            now, self._lost(f"{reason}: check that the publishers run and the topics match"), math.nan, math.nan
+        )
+
+    def change_limits(self, settings: JointSettings) -> None:
+        """Put the ``diagnosis.*`` parameters of other settings in force, without losing any evidence."""
+        self.settings = settings
+        self._judge.change_limits(Limits.from_settings(settings))
+
+    def reset_latch(self) -> None:
+        """Let go of a latched verdict."""
+        self._judge.reset_latch()
+
+    def reset(self) -> None:
+        """Forget all evidence, after the reducer was exchanged say; counters of the input stay."""
+        self._judge = Judge(self._judge.limits)
+        self._recorder.cut()
+        self._begin_evidence()
+
+    # One period ----------------------------------------------------------------------------------------------------
+
+    def _needed_names(self) -> tuple[str, ...]:
+        return (MOTION,) if self.settings.sensorless else (VIBRATION, MOTION)
+
+    def _assess(self, window: Window) -> Assessment:
+        epoch, end = self._timeline.epoch, window.end
+        if window.cut:
+            self._recorder.cut()
+            self._seen = dict.fromkeys(self._seen, window.start)
+        vibration, motion = self._vibration.take(end), self._motion.take(end)
+        for name, samples in ((VIBRATION, vibration), (MOTION, motion)):
+            if samples.stamps.size:
+                self._seen[name] = int(samples.stamps.max())
+        harvest = self._recorder.harvest(vibration, motion, self._motion.peek_first(), epoch, end)
+        evidence = self._gather(harvest)
+        lost = [name for name in self._needed_names() if self._is_lost(name, end)]
+        if lost:
+            verdict = self._lost(
+                f"No {' and no '.join(lost)} for {self._timeout / NANOSECONDS:g} s or more while other input goes on: "
+                "check the publisher, the topic's name and the stamps"
+            )
+        else:
+            verdict = self._judge.judge(evidence, self._missing(harvest))
+        speed, rms = self._speed(harvest), self._level(harvest.vibration)
+        assessment = replace(
+            self._pack(end, verdict, speed, rms), records=harvest.records, joint_samples=harvest.joint_samples
+        )
+        self._latest = assessment
+        return assessment
+
+    def _gather(self, harvest: Harvest) -> Identification | None:
+        if isinstance(self._identifier, SensorlessIdentifier):
+            if len(harvest.joint_samples):
+                self._identifier.add(harvest.joint_samples)
+            return self._identifier.estimate()
+        for record in harvest.records:
+            self._rms.add(record.speed * self._rpm, self._tangential(record.acceleration))
+            self._steady.add(record)
+            self._identifier.add(record)
+        if not harvest.records:
+            self._steady.interrupt()
+        return self._identifier.estimate()
+
+    def _is_lost(self, name: str, end: int) -> bool:
+        return bool(end - self._seen.get(name, self._timeline.epoch) >= self._timeout)
+
+    def _lost(self, reason: str) -> Verdict:
+        return Verdict(
+            component=Component.UNDETERMINED, level=Level.ERROR, fault_code=FaultCode.INPUT_LOST, reason=reason
+        )
+
+    def _missing(self, harvest: Harvest) -> str:
+        """Say why there is no evidence yet."""
+        absent = [name for name in self._needed_names() if name not in self._seen]
+        if absent:
+            return f"No {' and no '.join(absent)} so far"
+        if not self.settings.sensorless and not harvest.records:
+            fault = self._recorder.quality.last_fault
+            return "No stretch of vibration with known motion in the last period" + (f": {fault}" if fault else "")
+        speed = self._speed(harvest)
+        if not speed >= self.settings["analysis.minimum_speed"]:
+            return "The joint has not turned enough yet: the lines show in motion only"
+        return "Not enough motion seen yet: let the joint turn on"
+
+    def _speed(self, harvest: Harvest) -> float:
+        """Mean magnitude of the wave-generator speed [rpm]."""
+        if harvest.records:
+            total = sum(len(record) for record in harvest.records)
+            return sum(float(np.abs(r.speed).sum()) for r in harvest.records) / total * self._rpm
+        joint = harvest.joint_samples
+        if len(joint) < 2:
+            return math.nan
+        travel = float(np.abs(np.diff(np.unwrap(joint.angle))).sum())
+        return travel / float(joint.times[-1] - joint.times[0]) * self._rpm
+
+    def _tangential(self, acceleration: FloatArray) -> FloatArray:
+        """Vibration at the sensor's radius [m/s²]; gravity and the arm's own motion taken off an IMU's signal."""
+        values = self._radius * acceleration
+        known = np.isfinite(values)
+        if self.settings["input.source"] != "imu" or int(known.sum()) < 2 * _SLOW_DEGREE:
+            return values
+        place = np.linspace(-1.0, 1.0, values.size)
+        slow = np.polynomial.Legendre.fit(place[known], values[known], _SLOW_DEGREE, domain=[-1.0, 1.0])
+        return np.asarray(values - slow(place))
+
+    def _level(self, vibration: FloatArray) -> float:
+        """RMS [m/s²] of the period's samples."""
+        values = self._tangential(vibration)
+        values = values[np.isfinite(values)]
+        return float(np.sqrt(np.mean(values * values))) if values.size else math.nan
+
+    def _pack(self, stamp: int, verdict: Verdict, speed: float, rms: float) -> Assessment:
+        limits = self._judge.limits
+        quality = replace(
+            self._recorder.quality,
+            out_of_order=self._vibration.late + self._vibration.disordered,
+            clock_jumps=self._vibration.jumps + self._motion.jumps,
+        )
+        return Assessment(
+            stamp=stamp,
+            verdict=verdict,
+            identification=self._identifier.estimate(),
+            steady_parts=self._steady.parts(),
+            reducer=self._reducer,
+            rms_curve=self._rms.curve(),
+            quality=quality,
+            speed=speed,
+            rms=rms,
+            travel_needed=self._reducer.travel_to_separate(1),
+            warn_limit=limits.warn,
+            error_limit=limits.error,
+        )
