@@ -1,0 +1,231 @@
+"""Joint samples cut into strokes: one direction, fast enough for the lines and slow enough for the sampling rate."""
+
+import itertools
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from ..acquisition.record import JointSamples, Record
+
+FloatArray = npt.NDArray[np.float64]
+BoolArray = npt.NDArray[np.bool_]
+
+LOWEST_FREQUENCY = 3.0
+"""Hz of the first line below which friction and gravity are not told from it any more."""
+
+HIGHEST_SHARE = 0.45
+"""Highest line frequency used, as a part of the sampling rate; a line at half of it is its own alias."""
+
+WORKING_RATE = 250.0
+"""Hz; faster samples are averaged down to about this, which loses nothing of the lines that a joint's speed allows."""
+
+LONGEST_GAP = 0.5
+"""s without a message that end a stroke; shorter gaps are left out of it."""
+
+LONGEST = 6.0
+"""s after which a stroke is closed and the next one begins, so that an endless rotation yields evidence too."""
+
+SHORTEST = 40
+"""Rows of a stroke that is worth keeping: more than its trend terms."""
+
+GAP = 2.5
+"""Sample periods between two messages above which something is missing."""
+
+SPEED_SPAN = 0.04
+"""s over which speed is taken from positions where messages carry none."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Stroke:
+    """A stretch of motion in one direction.
+
+    Attributes
+    ----------
+    direction : int
+        1 or -1, the sign of the output speed.
+    times : ndarray, shape (rows,)
+        [s].
+    angle : ndarray, shape (rows,)
+        Output angle [rad].
+    speed : ndarray, shape (rows,)
+        Magnitude of the output speed [rad/s].
+    values : ndarray, shape (rows,)
+        The vibration signal: effort, velocity or acceleration, in its own unit.
+    starts : ndarray of bool, shape (rows,)
+        True where a row does not follow its predecessor without a gap.
+    step : ndarray, shape (rows,)
+        Output angle between successive samples that were averaged into a row [rad].
+    averaged : int
+        Samples averaged into a row, 1 for none.
+    rate : float
+        Rows per second.
+    """
+
+    direction: int
+    times: FloatArray
+    angle: FloatArray
+    speed: FloatArray
+    values: FloatArray
+    starts: BoolArray
+    step: FloatArray
+    averaged: int
+    rate: float
+
+    @property
+    def duration(self) -> float:
+        """Time covered [s]."""
+        return self.values.size / self.rate
+
+    def columns(self, orders: npt.ArrayLike) -> FloatArray:
+        """Lines of unit amplitude as the rows show them, averaging included.
+
+        Parameters
+        ----------
+        orders : array_like, shape (lines,)
+            Cycles per output revolution.
+
+        Returns
+        -------
+        ndarray, shape (rows, 2 * lines)
+            cos(order angle), then -sin(order angle), as in `analysis.line_regression`.
+        """
+        order = np.asarray(orders, dtype=np.float64)
+        phase = np.multiply.outer(self.angle, order)
+        gain: FloatArray | float = 1.0
+        if self.averaged > 1:
+            half = 0.5 * np.multiply.outer(self.step, order)
+            below = self.averaged * np.sin(half)
+            flat = np.abs(below) < 1e-9
+            gain = np.where(flat, 1.0, np.sin(self.averaged * half) / np.where(flat, 1.0, below))
+        return np.concatenate([gain * np.cos(phase), -gain * np.sin(phase)], axis=1)
+
+
+class StrokeCutter:
+    """Turns a stream of joint samples into strokes, independent of how the stream is chunked.
+
+    Parameters
+    ----------
+    source : str
+        ``'joint_effort'`` or ``'joint_velocity'``: the field that is the vibration signal.
+    order : float
+        Cycles per output revolution of the highest line looked for.
+    minimum_speed : float
+        Output speed [rad/s] below which the joint counts as standing.
+    """
+
+    def __init__(self, source: str, order: float, minimum_speed: float) -> None:
+        self._source = source
+        self._order = order
+        self._minimum = max(minimum_speed, LOWEST_FREQUENCY * math.tau / order)
+        self._pending = np.empty((0, 4))
+        self._recent = np.empty((0, 4))
+        self._period: float | None = None
+        self.too_fast = 0.0
+        self.turning = 0.0
+
+    def add(self, samples: JointSamples) -> list[Stroke]:
+        """Take in messages and return the strokes that are complete now."""
+        value = samples.effort if self._source == "joint_effort" else samples.speed
+        rows = np.column_stack([samples.times, samples.angle, samples.speed, value])
+        rows = rows[np.isfinite(rows[:, [0, 1, 3]]).all(axis=1)]
+        if not len(rows):
+            return []
+        known = np.concatenate([self._recent, rows])
+        rows[:, 2] = _speeds(known)[len(self._recent) :]
+        self._recent = known[known[:, 0] >= known[-1, 0] - 2.0 * SPEED_SPAN]
+        rows = np.concatenate([self._pending, rows])
+        sign = np.where(np.abs(rows[:, 2]) >= self._minimum, np.sign(rows[:, 2]), 0.0)
+        pause = np.diff(rows[:, 0])
+        edges = np.flatnonzero((np.diff(sign) != 0.0) | (pause > LONGEST_GAP) | (pause <= 0.0)) + 1
+        bounds = [0, *edges.tolist(), len(rows)]
+        strokes: list[Stroke] = []
+        for first, last in itertools.pairwise(bounds):
+            if sign[first] == 0.0:
+                first = last
+            while first < last:
+                end = first + int(np.searchsorted(rows[first:last, 0], rows[first, 0] + LONGEST))
+                if end == len(rows):
+                    break
+                strokes += self._close(rows[first:end])
+                first = end
+        self._pending = rows[first:]
+        return strokes
+
+    def _close(self, rows: FloatArray) -> list[Stroke]:
+        """The stroke of these rows, if it is worth one, less those in which the lines are too fast for the rate."""
+        if len(rows) < SHORTEST:
+            return []
+        if self._period is None:
+            self._period = float(np.median(np.diff(rows[:, 0])))
+        period = self._period
+        averaged = max(1, int(1.0 / period / WORKING_RATE))
+        self.turning += len(rows) * period
+        limit = HIGHEST_SHARE / (period * averaged) * math.tau / self._order
+        fast = np.abs(rows[:, 2]) > limit
+        self.too_fast += float(np.count_nonzero(fast)) * period
+        if np.count_nonzero(~fast) < SHORTEST * averaged:
+            return []
+        stroke = _stroke(rows, ~fast, period, averaged)
+        return [] if stroke is None else [stroke]
+
+
+def strokes_of_record(record: Record, order: float, minimum_speed: float) -> list[Stroke]:
+    """Cut a record of accelerations into strokes, as `StrokeCutter` does with joint samples."""
+    cutter = StrokeCutter("joint_effort", order, minimum_speed)
+    samples = JointSamples(times=record.times, angle=record.angle, speed=record.speed, effort=record.acceleration)
+    ending = JointSamples(
+        times=record.times[-1:] + record.period,
+        angle=record.angle[-1:],
+        speed=np.zeros(len(record.times[-1:])),
+        effort=np.zeros(len(record.times[-1:])),
+    )
+    return cutter.add(samples) + cutter.add(ending)
+
+
+def _speeds(rows: FloatArray) -> FloatArray:
+    """Output speeds [rad/s] of rows (time, angle, speed, value), from the positions where there is none."""
+    speed = rows[:, 2].copy()
+    missing = ~np.isfinite(speed)
+    if missing.any():
+        time, angle = rows[:, 0], rows[:, 1]
+        before = np.maximum(np.searchsorted(time, time - SPEED_SPAN, side="right") - 1, 0)
+        before = np.where(before == np.arange(time.size), np.maximum(before - 1, 0), before)
+        elapsed = np.maximum(time - time[before], 1e-9)
+        speed[missing] = ((angle - angle[before]) / elapsed)[missing]
+    return speed
+
+
+def _stroke(rows: FloatArray, good: BoolArray, period: float, averaged: int) -> Stroke | None:
+    """One stroke of the good rows, averaged in groups that do not reach over gaps."""
+    place = np.flatnonzero(good)
+    apart = np.diff(rows[place, 0]) > GAP * period
+    starts = np.concatenate([[True], apart | (np.diff(place) > 1)])
+    if averaged > 1:
+        run = np.cumsum(starts) - 1
+        within = np.arange(place.size) - np.flatnonzero(starts)[run]
+        group = np.flatnonzero(within % averaged == 0)
+        sizes = np.diff(np.append(group, place.size))
+        whole = group[sizes == averaged]
+        if whole.size < SHORTEST:
+            return None
+        index = place[whole[:, None] + np.arange(averaged)]
+        values, times, angle = (rows[index, column].mean(axis=1) for column in (3, 0, 1))
+        pace = rows[index, 2].mean(axis=1)
+        starts = np.concatenate([[True], np.diff(whole) != averaged]) | starts[whole]
+    else:
+        values, times, angle, pace = rows[place, 3], rows[place, 0], rows[place, 1], rows[place, 2]
+    if values.size < SHORTEST:
+        return None
+    return Stroke(
+        direction=1 if float(pace.mean()) > 0.0 else -1,
+        times=times,
+        angle=angle,
+        speed=np.abs(pace),
+        values=values,
+        starts=starts,
+        step=pace * period,
+        averaged=averaged,
+        rate=1.0 / (period * averaged),
+    )
