@@ -1,17 +1,15 @@
 """The monitor itself, fed with the simulated vibration of a case: what it would say of the paper's drivers."""
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..assessment import Assessment
 from ..contract import NANOSECONDS, Block
 from ..errors import HdMonitorError
+from ..monitor import Monitor
 from .cases import Case
 from .records import steady_record
-
-if TYPE_CHECKING:
-    from ..assessment import Assessment
 
 SENSOR_NOISE = 0.2
 """Standard deviation of the noise put on the vibration [rad/s²]: 11 mg at 0.55 m, an ordinary MEMS sensor's."""
@@ -22,7 +20,7 @@ _BLOCKS_PER_SECOND = 5
 _SEED = 2021
 
 
-def diagnose(case: Case, speed: float, *, revolutions: int = OUTPUT_REVOLUTIONS) -> "Assessment":
+def diagnose(case: Case, speed: float, *, revolutions: int = OUTPUT_REVOLUTIONS) -> Assessment:
     """Let a monitor that knows the reducer, but none of its defects, watch a steady run.
 
     Parameters
@@ -43,8 +41,6 @@ def diagnose(case: Case, speed: float, *, revolutions: int = OUTPUT_REVOLUTIONS)
     HdMonitorError
         If the run is too short for an assessment.
     """
-    from ..monitor import Monitor
-
     record = steady_record(case.model, speed, revolutions)
     response = record.response
     noise = np.random.default_rng(_SEED).normal(0.0, SENSOR_NOISE, response.times.size)
@@ -72,7 +68,7 @@ def diagnose(case: Case, speed: float, *, revolutions: int = OUTPUT_REVOLUTIONS)
     return assessment
 
 
-def verdict_words(assessment: "Assessment") -> str:
+def verdict_words(assessment: Assessment) -> str:
     """The part named, its level, and both indexes with their standard deviations."""
     verdict, found = assessment.verdict, assessment.identification
     words = f"{verdict.component.value} ({verdict.level.name})"

@@ -91,7 +91,8 @@ def _draw_curve(axes: Axes, curve: Curve, colour: str) -> None:
 
 
 def _draw_surface(axes: Axes, surface: Surface, figure: Figure) -> None:
-    largest = float(np.abs(surface.values).max())
+    # The level in the middle of the colours; what lies far below it must not drown in one dark tone
+    largest = max(float(surface.values.max()), -2.5 * float(surface.values.min()))
     image = axes.pcolormesh(
         surface.x,
         surface.y,

@@ -8,7 +8,7 @@ from .claim import Claim
 from .diagnosis import SENSOR_NOISE, diagnose
 from .exhibit import Curve, Exhibit, Panel
 
-_LARGEST_ERROR = 0.005  # of the mean stiffness
+_LARGEST_ERROR = 0.001  # of the mean stiffness
 
 
 def table_1(cases: Cases) -> Exhibit:
