@@ -1,7 +1,6 @@
 """A wave-generator speed that is piecewise linear in time, and its exact angle."""
 
 import math
-from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
@@ -28,7 +27,6 @@ class Ripple(NamedTuple):
 NO_RIPPLE = Ripple()
 
 
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class SpeedProgramme:
     """Speed of the wave generator over time: straight lines between corners, once, several times or for ever.
 
@@ -58,23 +56,29 @@ class SpeedProgramme:
     15.0
     """
 
-    times: FloatArray
-    speeds: FloatArray
-    cycles: int = 0
-    ripple: Ripple = NO_RIPPLE
-    _slopes: FloatArray = field(init=False, repr=False)
-    _angles: FloatArray = field(init=False, repr=False)
+    __slots__ = ("_angles", "_slopes", "cycles", "ripple", "speeds", "times")
 
-    def __post_init__(self) -> None:
-        """Check the corners and integrate them once."""
-        times = np.array(self.times, dtype=np.float64)
-        speeds = np.array(self.speeds, dtype=np.float64)
+    def __init__(
+        self, *, times: npt.ArrayLike, speeds: npt.ArrayLike, cycles: int = 0, ripple: Ripple = NO_RIPPLE
+    ) -> None:
+        self.times: FloatArray = np.array(times, dtype=np.float64)
+        self.speeds: FloatArray = np.array(speeds, dtype=np.float64)
+        self.cycles = cycles
+        self.ripple = ripple
+        self._check()
+        lengths = np.diff(self.times)
+        steps = 0.5 * RPM * (self.speeds[1:] + self.speeds[:-1]) * lengths
+        # Behind the last corner the last speed is held: a finite programme may be asked for a little more.
+        self._slopes: FloatArray = np.append(RPM * np.diff(self.speeds) / lengths, 0.0)
+        self._angles: FloatArray = np.concatenate([[0.0], np.cumsum(steps)])
+
+    def _check(self) -> None:
+        times, speeds = self.times, self.speeds
         if times.ndim != 1 or times.shape != speeds.shape or times.size < 2:
             raise ParameterError(
                 f"{times.size} times and {speeds.size} speeds make no programme; give at least two of each"
             )
-        lengths = np.diff(times)
-        if times[0] != 0.0 or not np.all(lengths > 0.0) or not np.all(np.isfinite(times)):
+        if times[0] != 0.0 or not np.all(np.diff(times) > 0.0) or not np.all(np.isfinite(times)):
             raise ParameterError(f"times {times.tolist()} s do not rise from 0; give the corners in their order")
         if not np.all(np.isfinite(speeds)):
             raise ParameterError(f"speeds {speeds.tolist()} rpm are not all finite; give plain numbers")
@@ -90,12 +94,6 @@ class SpeedProgramme:
                 f"a speed ripple of amplitude {self.ripple.amplitude:g} would stop or reverse the wave generator; "
                 "give a fraction of at least 0 and below 1"
             )
-        steps = 0.5 * RPM * (speeds[1:] + speeds[:-1]) * lengths
-        object.__setattr__(self, "times", times)
-        object.__setattr__(self, "speeds", speeds)
-        # Behind the last corner the last speed is held: a finite programme may be asked for a little more.
-        object.__setattr__(self, "_slopes", np.append(RPM * np.diff(speeds) / lengths, 0.0))
-        object.__setattr__(self, "_angles", np.concatenate([[0.0], np.cumsum(steps)]))
 
     @property
     def cycle_duration(self) -> float:

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
-import numpy as np
 from hd_monitor.errors import ParameterError
 from hd_monitor.parameter import Parameter
 from hd_monitor.reducer import Reducer
@@ -81,14 +80,14 @@ def build_programme(
     kind = PROGRAMMES[name]
     own = {p.name.partition(".")[2]: values.get(p.name, p.default) for p in kind.parameters}
     times, speeds = kind.corners(own, reducer, cycles != 1)
-    return SpeedProgramme(times=np.array(times), speeds=np.array(speeds), cycles=cycles, ripple=ripple)
+    return SpeedProgramme(times=times, speeds=speeds, cycles=cycles, ripple=ripple)
 
 
 def _chain(start: float, *pieces: tuple[float, float]) -> Corners:
     """Corners from a start speed and pieces (duration [s], speed at the end [rpm]); pieces without duration vanish."""
     times, speeds = [0.0], [start]
     for duration, speed in pieces:
-        if duration > 0.0:
+        if times[-1] + duration > times[-1]:
             times.append(times[-1] + duration)
             speeds.append(speed)
     return times, speeds
@@ -124,9 +123,10 @@ def _strokes(values: Mapping[str, Any], reducer: Reducer, closed: bool) -> Corne
     revolutions = values["angle"] / 360.0 * reducer.reduction
     rate = values["acceleration"]
     # A short stroke brakes before it has reached its speed: v² / (60 a) revolutions go into the two ramps.
-    speed = min(values["speed"], math.sqrt(60.0 * rate * revolutions))
+    reachable = math.sqrt(60.0 * rate * revolutions)
+    speed = min(values["speed"], reachable)
     ramp = speed / rate
-    hold = max(0.0, 60.0 * revolutions / speed - ramp)
+    hold = 60.0 * revolutions / speed - ramp if speed < reachable else 0.0
     pieces: list[tuple[float, float]] = []
     for direction in (1.0, -1.0):
         peak = direction * speed

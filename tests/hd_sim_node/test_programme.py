@@ -1,0 +1,147 @@
+"""Speed programmes: their angle is the exact integral of their speed, whatever the corners, cycles and ripple."""
+
+import math
+
+import numpy as np
+import pytest
+from hd_monitor.errors import ParameterError
+from hd_sim_node.programme import RPM, Ripple, SpeedProgramme
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.integrate import quad, trapezoid
+
+SPEEDS = st.floats(-3000.0, 3000.0)
+
+
+@st.composite
+def programmes(draw, *, ripple=False):
+    lengths = draw(st.lists(st.floats(0.05, 3.0), min_size=1, max_size=6))
+    times = np.concatenate([[0.0], np.cumsum(lengths)])
+    speeds = np.array(draw(st.lists(SPEEDS, min_size=times.size, max_size=times.size)))
+    cycles = draw(st.integers(0, 3))
+    if cycles != 1:
+        speeds[-1] = speeds[0]
+    shape = Ripple(draw(st.floats(0.0, 0.5)), draw(st.floats(0.1, 4.0)), draw(st.floats(-3.0, 3.0)))
+    return SpeedProgramme(times=times, speeds=speeds, cycles=cycles, ripple=shape if ripple else Ripple())
+
+
+@given(programmes(), st.floats(0.0, 1.0))
+def test_angle_is_the_integral_of_the_speed(programme, fraction):
+    """Between corners the speed is linear, so the trapezoid rule over the corners is exact."""
+    span = programme.duration if math.isfinite(programme.duration) else 4.0 * programme.cycle_duration
+    end = fraction * span
+    corners = np.concatenate([n * programme.cycle_duration + programme.times for n in range(5)])
+    grid = np.unique(np.append(corners[corners < end], [0.0, end]))
+    integral = trapezoid(programme.speed(grid), grid)
+    assert programme.angle(end) == pytest.approx(integral, rel=1e-9, abs=1e-6)
+
+
+@given(programmes(ripple=True), st.floats(0.0, 1.0))
+def test_speed_is_the_slope_of_the_angle_and_acceleration_that_of_the_speed(programme, fraction):
+    t = fraction * programme.cycle_duration
+    step = 1e-5
+    if np.abs(programme.times - t).min() < 2 * step:
+        return  # the acceleration jumps at a corner
+    around = np.array([t - step, t + step])
+    slope = np.diff(programme.angle(around))[0] / (2 * step)
+    assert slope == pytest.approx(float(programme.speed(t)), rel=1e-5, abs=1e-3)
+    bend = np.diff(programme.speed(around))[0] / (2 * step)
+    assert bend == pytest.approx(float(programme.acceleration(t)), rel=1e-4, abs=0.5)
+
+
+def test_angle_with_ripple_is_the_integral():
+    programme = SpeedProgramme(
+        times=[0.0, 1.0, 2.0], speeds=[100.0, 300.0, 300.0], cycles=1, ripple=Ripple(0.1, 2.0, 0.4)
+    )
+    integral, _ = quad(lambda t: float(programme.speed(t)), 0.0, 1.7, points=[1.0], limit=500, epsabs=1e-10)
+    assert programme.angle(1.7) == pytest.approx(integral, abs=1e-8)
+
+
+def test_ripple_of_order_zero_is_a_factor():
+    programme = SpeedProgramme(times=[0.0, 1.0], speeds=[60.0, 60.0], ripple=Ripple(0.1, 0.0, 0.0))
+    assert programme.angle(2.0) == pytest.approx(1.1 * 2.0 * math.tau)
+
+
+@given(programmes(ripple=True))
+def test_a_scalar_and_any_shape_give_the_same(programme):
+    times = np.linspace(0.0, 2.5 * programme.cycle_duration, 12).reshape(3, 4)
+    for quantity in (programme.angle, programme.speed, programme.acceleration):
+        values = quantity(times)
+        assert values.shape == (3, 4)
+        assert values[1, 2] == quantity(times[1, 2])
+
+
+@given(programmes())
+def test_the_angle_has_no_jump_where_cycles_join(programme):
+    for n in (1, 2, 3):
+        t = n * programme.cycle_duration
+        before, after = programme.angle([t * (1 - 1e-9), t * (1 + 1e-9)])
+        assert after - before == pytest.approx(0.0, abs=programme.peak_speed * RPM * t * 1e-8 + 1e-9)
+
+
+def test_cycles_repeat():
+    programme = SpeedProgramme(times=[0.0, 1.0, 3.0], speeds=[0.0, 600.0, 0.0], cycles=0)
+    assert programme.duration == math.inf
+    one = programme.angle(3.0)
+    assert one == pytest.approx(600.0 * RPM * 1.5)
+    t = np.linspace(0.0, 3.0, 50)
+    np.testing.assert_allclose(programme.angle(t + 6.0), programme.angle(t) + 2 * one, rtol=1e-12)
+
+
+def test_a_finite_programme_holds_its_last_speed_behind_its_end():
+    programme = SpeedProgramme(times=[0.0, 1.0], speeds=[0.0, 60.0], cycles=1)
+    assert programme.duration == 1.0
+    assert programme.speed(1.5) == pytest.approx(math.tau)
+    assert programme.angle(1.5) == pytest.approx(math.tau * (0.5 + 0.5))
+
+
+def test_a_second_cycle_ends_the_programme():
+    programme = SpeedProgramme(times=[0.0, 1.0, 2.0], speeds=[0.0, 60.0, 0.0], cycles=2)
+    assert programme.duration == 4.0
+    assert programme.angle(10.0) == pytest.approx(2 * math.tau)
+
+
+def test_after_a_week_the_angle_is_still_exact():
+    programme = SpeedProgramme(times=[0.0, 10.0], speeds=[3000.0, 3000.0])
+    week = 7 * 86_400.0
+    turned = programme.angle(week + 1.0) - programme.angle(week)
+    assert turned == pytest.approx(50 * math.tau, abs=1e-6)
+
+
+def test_visited_speeds_are_the_held_ones_and_a_grid_between():
+    programme = SpeedProgramme(times=[0.0, 1.0, 2.0, 3.0], speeds=[210.0, 210.0, -290.0, -290.0], cycles=1)
+    visited = programme.visited_speeds(spacing=100.0).tolist()
+    assert visited == [0.0, 100.0, 200.0, 210.0, 290.0]
+
+
+def test_visited_speeds_do_not_reach_below_the_slowest():
+    programme = SpeedProgramme(times=[0.0, 1.0], speeds=[500.0, 620.0], cycles=1)
+    assert programme.visited_speeds(spacing=50.0).tolist() == [500.0, 550.0, 600.0, 620.0]
+
+
+def test_peak_speed_counts_ripple_and_either_direction():
+    programme = SpeedProgramme(times=[0.0, 1.0], speeds=[-200.0, 100.0], cycles=1, ripple=Ripple(0.1))
+    assert programme.peak_speed == pytest.approx(220.0)
+
+
+@pytest.mark.parametrize(
+    ("changes", "match"),
+    [
+        ({"times": [0.0], "speeds": [1.0]}, "at least two"),
+        ({"speeds": [1.0, 2.0, 3.0]}, "2 times and 3 speeds"),
+        ({"times": [0.0, 0.0]}, "do not rise"),
+        ({"times": [1.0, 2.0]}, "do not rise from 0"),
+        ({"times": [0.0, math.inf]}, "do not rise"),
+        ({"speeds": [1.0, math.nan]}, "not all finite"),
+        ({"cycles": -1}, "negative"),
+        ({"cycles": 0}, "no drive can jump"),
+        ({"cycles": 2}, "no drive can jump"),
+        ({"ripple": Ripple(1.0)}, "stop or reverse"),
+        ({"ripple": Ripple(-0.1)}, "stop or reverse"),
+        ({"ripple": Ripple(math.nan)}, "stop or reverse"),
+    ],
+)
+def test_impossible_programmes_are_refused(changes, match):
+    given_values = {"times": [0.0, 1.0], "speeds": [100.0, 200.0], "cycles": 1} | changes
+    with pytest.raises(ParameterError, match=match):
+        SpeedProgramme(**given_values)
