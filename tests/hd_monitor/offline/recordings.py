@@ -34,6 +34,11 @@ def joint_state(stamp: int, **joints: tuple[float, float, float]) -> Any:
     return TYPES["sensor_msgs/msg/JointState"](header(stamp), list(joints), *(column.copy() for column in columns))
 
 
+def joint_states(stamp: int, names: Sequence[str], *arrays: Sequence[float]) -> Any:
+    columns = [np.array(array, dtype=np.float64) for array in arrays]
+    return TYPES["sensor_msgs/msg/JointState"](header(stamp), list(names), *columns)
+
+
 def block(stamp: int, period: float, sequence: int, samples: Any) -> Any:
     size = len(samples)
     dimension = TYPES["std_msgs/msg/MultiArrayDimension"]("torsional_acceleration", size, size)
@@ -89,6 +94,29 @@ def small(seconds: float = 3.0) -> list[Event]:
     for number in range(round(100 * seconds)):
         stamp = START + number * 10_000_000
         events.append(Event(stamp, "/joint_states", joint_state(stamp, joint=(0.01 * number, 1.0, 10.0))))
+    return events
+
+
+def simulated(prefix: str = "", joint: str = "joint", start: int = START, **parameters: Any) -> list[Event]:
+    """Everything that a simulated rig sends, each message recorded when it was sent."""
+    from hd_sim_node.settings import RigSettings
+    from hd_sim_node.simulation import Simulation
+
+    given = {name.replace("__", "."): value for name, value in parameters.items()}
+    events = []
+    for stretch in Simulation(RigSettings.from_mapping(given)):
+        for due, topic, row in stretch.schedule():
+            if topic == "torsional_acceleration/block":
+                b = stretch.blocks[row]
+                message = block(start + b.stamp, b.period, b.sequence, b.samples)
+            elif topic == "torsional_acceleration":
+                message = accel(start + int(stretch.stamps[row]), float(stretch.samples[row]))
+            else:
+                j = stretch.joint
+                columns = [column for column in (j.position, j.velocity, j.effort) if column is not None]
+                values = [[float(column[row])] for column in columns] + [[]] * (3 - len(columns))
+                message = joint_states(start + int(j.stamps[row]), [joint], *values)
+            events.append(Event(start + due, f"{prefix}/{topic}", message))
     return events
 
 

@@ -1,0 +1,138 @@
+"""What to replay: which joints with which settings, listening to which of a recording's topics."""
+
+import itertools
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from .. import cdr
+from ..adapters import VIBRATION_SOURCES
+from ..errors import ParameterError
+from ..settings import JointSettings, split_joints
+from .bag import Bag
+from .errors import BagError
+from .topics import JointTopics, TopicFinder
+
+_SOURCE = "input.source"
+_JOINTS = "joints"
+_FIRST_MESSAGES = 200
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class JointPlan:
+    """A joint to replay.
+
+    Attributes
+    ----------
+    joint : str
+        Its name in the parameters.
+    settings : JointSettings
+    topics : JointTopics
+    notes : tuple of str
+        What was taken for granted.
+    """
+
+    joint: str
+    settings: JointSettings
+    topics: JointTopics
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Request:
+    """What the user asked for.
+
+    Attributes
+    ----------
+    parameters : mapping
+        The node's parameters by dotted name.
+    joints : sequence of str
+        Joints to replay; all of the parameters' if empty.
+    namespace : str or None
+        Namespace of the node, if several have been recorded.
+    remap : mapping of str to str
+        From the contract's relative names to the recording's.
+    """
+
+    parameters: Mapping[str, Any] = field(default_factory=dict)
+    joints: Sequence[str] = ()
+    namespace: str | None = None
+    remap: Mapping[str, str] = field(default_factory=dict)
+
+
+def plan(bag: Bag, request: Request) -> list[JointPlan]:
+    """Find out what to replay.
+
+    Raises
+    ------
+    BagError
+        If a topic is missing or ambiguous.
+    ParameterError
+        If the parameters are wrong, or a joint asked for is none of theirs.
+    """
+    finder = TopicFinder(
+        bag.topics, lambda topic: array_labels(bag, topic), namespace=request.namespace, remap=request.remap
+    )
+    parameters = dict(request.parameters)
+    notes: list[str] = []
+    if not any(name == _SOURCE or name.endswith(f".{_SOURCE}") for name in parameters):
+        parameters[_SOURCE] = _choose_source(finder, notes)
+    named = list(parameters.get(_JOINTS) or ())
+    several = len(named) > 1
+    if not named:
+        named = list(request.joints) or _discover(bag, finder, str(parameters.get(_SOURCE, "")), request)
+        several = len(named) > 1
+        if named:
+            parameters[_JOINTS] = named
+    settings = split_joints(parameters)
+    if unknown := [joint for joint in request.joints if joint not in settings]:
+        raise ParameterError(f"{', '.join(unknown)}: not among the parameters' joints, {', '.join(settings)}")
+    plans = []
+    for joint, own in settings.items():
+        if request.joints and joint not in request.joints:
+            continue
+        topics = finder.joint_topics(own[_SOURCE], joint if several else None)
+        plans.append(JointPlan(joint=joint, settings=own, topics=topics, notes=tuple(notes)))
+    return plans
+
+
+def array_labels(bag: Bag, topic: str) -> tuple[str, ...]:
+    """Labels of the dimensions of an array topic's first message; none if it cannot be read."""
+    first = next(iter(bag.messages([topic])), None)
+    groups, _ = cdr.decode_multi_arrays([first.data] if first else [])
+    return tuple(dimension.label for dimension in groups[0].dimensions) if groups else ()
+
+
+def joint_names(bag: Bag, topic: str) -> tuple[str, ...]:
+    """Names of the joints in a joint_states topic's first messages; several publishers may share the topic."""
+    first = [message.data for message in itertools.islice(bag.messages([topic]), _FIRST_MESSAGES)]
+    groups, _ = cdr.decode_joint_states(first)
+    return tuple(dict.fromkeys(name for group in groups for name in group.names))
+
+
+def _choose_source(finder: TopicFinder, notes: list[str]) -> str:
+    """Choose the vibration signal where the parameters leave it open."""
+    for source in VIBRATION_SOURCES:
+        if finder.has(source):
+            if source != "block":
+                notes.append(f"input.source is not given: {source} was recorded and is taken")
+            return source
+    if finder.has("joint_effort"):
+        wanted = ", ".join(source.topic for source in VIBRATION_SOURCES.values())
+        raise BagError(
+            f"none of {wanted} was recorded; for a verdict from joint_states alone set input.source to joint_effort or "
+            "joint_velocity, else name the vibration topic with --remap"
+        )
+    return "block"
+
+
+def _discover(bag: Bag, finder: TopicFinder, source: str, request: Request) -> list[str]:
+    """Take the joints below whose names vibration topics stand, if joint_states knows them and nobody was named."""
+    if source not in VIBRATION_SOURCES or request.namespace is not None or request.remap:
+        return []
+    prefixes = finder.prefixes(source)
+    if len(prefixes) < 2 or any(not prefix for prefix in prefixes):
+        return []
+    names = [prefix.rpartition("/")[2] for prefix in prefixes]
+    known = joint_names(bag, finder.joint_topics("joint_effort").motion)
+    return names if len(set(names)) == len(names) and set(names) <= set(known) else []

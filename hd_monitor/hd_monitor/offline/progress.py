@@ -1,0 +1,56 @@
+"""Progress of long replays: one line on a terminal, rewritten; a line every few seconds elsewhere."""
+
+import sys
+import time
+from typing import TextIO
+
+from ..contract import NANOSECONDS
+from .bag import Bag, Window
+
+_ON_TERMINAL = 0.2
+_ELSEWHERE = 5.0
+_FIRST = 1.0
+"""Seconds between two lines; a replay that takes less than the last shows none."""
+
+
+class ProgressLine:
+    """Writes how far a replay is; to be called after each window of messages.
+
+    Parameters
+    ----------
+    bag : Bag
+    stream : text file, optional
+        Standard error by default.
+    """
+
+    def __init__(self, bag: Bag, stream: TextIO | None = None) -> None:
+        self._bag = bag
+        self._stream = stream if stream is not None else sys.stderr
+        self._terminal = self._stream.isatty()
+        self._began = time.monotonic()
+        self._next = self._began + (_FIRST if self._terminal else _ELSEWHERE)
+        self._first: int | None = None
+        self._shown = False
+
+    def __call__(self, window: Window) -> None:
+        """Show the progress if it is time to."""
+        if self._first is None:
+            self._first = window.start
+        now = time.monotonic()
+        if now < self._next:
+            return
+        self._next = now + (_ON_TERMINAL if self._terminal else _ELSEWHERE)
+        done = (window.end - self._first) / NANOSECONDS
+        text = f"{done:.0f} s of the recording, {done / (now - self._began):.0f} times real time"
+        if self._bag.start is not None and self._bag.end is not None and self._bag.end > self._bag.start:
+            share = (window.end - self._bag.start) / (self._bag.end - self._bag.start)
+            text = f"{min(share, 1.0):4.0%}: {text}"
+        self._stream.write(f"\r\x1b[2K{text}" if self._terminal else f"{text}\n")
+        self._stream.flush()
+        self._shown = True
+
+    def close(self) -> None:
+        """Wipe the line off a terminal."""
+        if self._terminal and self._shown:
+            self._stream.write("\r\x1b[2K")
+            self._stream.flush()

@@ -1,0 +1,91 @@
+"""Replay: a recording's messages through the same monitors, by the same path, as in the node."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+from ..adapters import Inputs
+from ..assessment import Assessment
+from ..contract import NANOSECONDS
+from ..monitor import Monitor
+from .bag import Bag, Window
+from .plan import JointPlan
+
+Progress = Callable[[Window], None]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Replayed:
+    """What a monitor said, and of which joint.
+
+    Attributes
+    ----------
+    plan : JointPlan
+    assessment : Assessment
+    last : bool
+        True for what a node would show at the recording's end; it may repeat the one before.
+    """
+
+    plan: JointPlan
+    assessment: Assessment
+    last: bool = False
+
+
+class _Channel:
+    """One joint's monitor with its inputs."""
+
+    def __init__(self, plan: JointPlan) -> None:
+        self.plan = plan
+        self.monitor = Monitor(plan.joint, plan.settings)
+        self._inputs = Inputs(plan.joint, plan.settings, self.monitor)
+        self._timeout = round(plan.settings["input.timeout"] * NANOSECONDS)
+        self._heard: int | None = None
+
+    def feed(self, window: Window) -> Iterator[Replayed]:
+        """Hand over a window's messages; yield what the monitor says to them."""
+        motion = window.messages.get(self.plan.topics.motion, [])
+        vibration = window.messages.get(self.plan.topics.vibration or "", [])
+        if not motion and not vibration:
+            return
+        if self._heard is not None and window.start - self._heard >= self._timeout:
+            yield Replayed(plan=self.plan, assessment=self.monitor.silence(self._heard + self._timeout))
+        self._heard = window.end
+        if motion:
+            self._inputs.add_motion(motion)
+        if vibration:
+            self._inputs.add_vibration(vibration)
+        for assessment in self.monitor.advance():
+            yield Replayed(plan=self.plan, assessment=assessment)
+
+    def finish(self) -> Iterator[Replayed]:
+        """Yield what a node would show at the end; nothing if it would show nothing."""
+        assessment = self.monitor.finish()
+        if assessment is not None:
+            yield Replayed(plan=self.plan, assessment=assessment, last=True)
+
+
+def replay(bag: Bag, plans: Sequence[JointPlan], progress: Progress | None = None) -> Iterator[Replayed]:
+    """Put a recording through one monitor a joint, as fast as the machine allows.
+
+    Parameters
+    ----------
+    bag : Bag
+    plans : sequence of JointPlan
+    progress : callable, optional
+        Called with each window of messages after it has been fed.
+
+    Yields
+    ------
+    Replayed
+        Every assessment in the order of the stamps, joint by joint within a few seconds of recorded time; then each
+        joint's last one.
+    """
+    channels = [_Channel(plan) for plan in plans]
+    topics = {topic for plan in plans for topic in plan.topics if topic is not None}
+    pause = min(round(plan.settings["input.timeout"] * NANOSECONDS) for plan in plans)
+    for window in bag.windows(topics, pause=pause):
+        for channel in channels:
+            yield from channel.feed(window)
+        if progress is not None:
+            progress(window)
+    for channel in channels:
+        yield from channel.finish()

@@ -1,0 +1,131 @@
+"""The result of a replay as plain data: what ``--json`` writes and what reports and comparisons read."""
+
+import math
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+from .. import __version__
+from ..adapters import VIBRATION_SOURCES
+from ..assessment import Assessment
+from ..contract import NANOSECONDS
+from ..diagnosis.status import status_of
+from ..diagnosis.verdict import Level
+from .plan import JointPlan
+from .replay import Replayed
+
+
+def plain(value: Any) -> Any:
+    """Make a value fit for JSON: numbers that are not finite become null."""
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, dict):
+        return {name: plain(item) for name, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [plain(item) for item in value]
+    return value
+
+
+def verdict_entry(assessment: Assessment) -> dict[str, Any]:
+    """Write the verdict and the numbers it rests on; indexes are fractions."""
+    verdict, found, quality = assessment.verdict, assessment.identification, assessment.quality
+    return {
+        "component": verdict.component.value,
+        "level": int(verdict.level),
+        "level_name": Level(verdict.level).name,
+        "fault_code": verdict.fault_code.value,
+        "reason": verdict.reason,
+        "flexspline_index": found.index.flexspline if found else None,
+        "flexspline_index_std": found.index_std.flexspline if found else None,
+        "circular_spline_index": found.index.circular_spline if found else None,
+        "circular_spline_index_std": found.index_std.circular_spline if found else None,
+        "travel_deg": math.degrees(found.travel) if found else 0.0,
+        "samples": quality.samples,
+        "gaps": quality.gaps,
+    }
+
+
+@dataclass(slots=True)
+class JointResult:
+    """What was said of one joint, collected as it comes.
+
+    Attributes
+    ----------
+    plan : JointPlan
+    timeline : list of dict
+        One entry an assessment.
+    last : Assessment or None
+        What a node would show at the recording's end.
+    """
+
+    plan: JointPlan
+    timeline: list[dict[str, Any]] = field(default_factory=list)
+    last: Assessment | None = None
+
+    def add(self, said: Replayed) -> None:
+        """Take the next assessment."""
+        if said.last:
+            self.last = said.assessment
+        if not said.last or not self.timeline:
+            entry = {"stamp": said.assessment.stamp, "time": said.assessment.stamp / NANOSECONDS}
+            entry |= verdict_entry(said.assessment)
+            entry |= {"speed_rpm": said.assessment.speed, "rms": said.assessment.rms}
+            self.timeline.append(plain(entry))
+
+    @property
+    def unusable(self) -> str:
+        """Why nothing can be said of the joint; empty if something can."""
+        if self.last is None:
+            return f"joint {self.plan.joint!r}: too few messages were recorded for a single verdict"
+        quality = self.last.quality
+        fault = quality.last_fault
+        if not quality.motion_messages:
+            return f"joint {self.plan.joint!r}: no usable joint states{_because(fault)}"
+        if self.plan.settings["input.source"] in VIBRATION_SOURCES and not quality.samples:
+            return f"joint {self.plan.joint!r}: no usable vibration samples{_because(fault)}"
+        return ""
+
+    def as_dict(self) -> dict[str, Any]:
+        """Write the joint's part of the JSON."""
+        last, plan = self.last, self.plan
+        if last is None:
+            return {"joint": plan.joint, "verdict": None, "lines": [], "rms_curve": [], "timeline": self.timeline}
+        lines = last.identification.lines if last.identification else ()
+        entry = {
+            "joint": plan.joint,
+            "verdict": verdict_entry(last),
+            "lines": [
+                {
+                    "k": line.k,
+                    "circular_spline": line.amplitude.circular_spline,
+                    "flexspline": line.amplitude.flexspline,
+                    "circular_spline_std": line.std.circular_spline,
+                    "flexspline_std": line.std.flexspline,
+                }
+                for line in lines
+            ],
+            "rms_curve": [{"rpm": rpm, "rms": rms, "samples": samples} for rpm, rms, samples in last.rms_curve.bins],
+            "timeline": self.timeline,
+            "relative": bool(last.identification.relative) if last.identification else None,
+            "warn_limit": last.warn_limit,
+            "error_limit": last.error_limit,
+            "quality": asdict(last.quality),
+            "status": dict(status_of(last, plan.joint, plan.settings).values),
+            "topics": plan.topics._asdict(),
+            "parameters": dict(plan.settings.values),
+            "notes": list(plan.notes),
+        }
+        return dict(plain(entry))
+
+
+def as_dict(bag: str, notes: list[str], joints: list[JointResult]) -> dict[str, Any]:
+    """Write the whole JSON."""
+    return {
+        "joints": [joint.as_dict() for joint in joints],
+        "bag": bag,
+        "notes": notes,
+        "generator": f"hd_monitor {__version__}",
+    }
+
+
+def _because(fault: str) -> str:
+    return f" ({fault})" if fault else " were recorded"

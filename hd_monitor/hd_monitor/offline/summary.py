@@ -1,0 +1,50 @@
+"""A replay's result in a few lines of text, for the terminal."""
+
+import math
+
+from ..diagnosis.verdict import Level
+from .result import JointResult
+
+
+def summarise(result: JointResult) -> str:
+    """Write what was found out about a joint."""
+    last = result.last
+    if last is None:
+        return result.unusable
+    verdict, found = last.verdict, last.identification
+    lines = [
+        f"{result.plan.joint}: {Level(verdict.level).name}, {verdict.component.value} ({verdict.fault_code.value})",
+        f"  {verdict.reason}",
+    ]
+    if found is not None:
+        kind = "relative index" if found.relative else "index"
+        index, std = found.index, found.index_std
+        lines += [
+            f"  flexspline {kind} {_percent(index.flexspline, std.flexspline)}, "
+            f"circular spline {_percent(index.circular_spline, std.circular_spline)}; "
+            f"limits {100 * last.warn_limit:g} % and {100 * last.error_limit:g} %",
+            f"  from {math.degrees(found.travel):.0f}° of travel, signal to noise {found.signal_to_noise:.0f} dB",
+        ]
+    quality = last.quality
+    faults = {
+        "gaps": quality.gaps,
+        "duplicates": quality.duplicates,
+        "out of order": quality.out_of_order,
+        "not finite": quality.not_finite,
+        "clipped": quality.clipped,
+        "stuck": quality.stuck,
+        "spikes": quality.spikes,
+        "clock jumps": quality.clock_jumps,
+        "bad joint states": quality.motion_faults,
+        "rejected": quality.rejected,
+    }
+    wrong = ", ".join(f"{name} {count}" for name, count in faults.items() if count) or "no faults in the data"
+    lines.append(
+        f"  {quality.samples} samples at {quality.rate:.1f} Hz, {quality.motion_messages} joint states; {wrong}"
+    )
+    lines += [f"  note: {note}" for note in result.plan.notes]
+    return "\n".join(lines)
+
+
+def _percent(value: float, std: float) -> str:
+    return f"{100 * value:.2f} ± {100 * std:.2f} %"

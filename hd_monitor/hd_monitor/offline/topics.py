@@ -1,0 +1,133 @@
+"""Which topics of a recording belong to a joint: by name, by type and by what the messages say of themselves."""
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import NamedTuple
+
+from ..adapters import MOTION_SOURCE, VIBRATION_SOURCES, Source
+from ..contract import BLOCK_LABEL
+from .errors import BagError
+from .salvage import RawTopic
+
+Labels = Callable[[str], tuple[str, ...]]
+"""Gives the labels of the dimensions of an array topic's first message."""
+
+
+class JointTopics(NamedTuple):
+    """Full names of the topics of one joint; `vibration` is None in the sensorless mode."""
+
+    vibration: str | None
+    motion: str
+
+
+class TopicFinder:
+    """Looks up topics as a node with remappings would, in a namespace that nobody needs to name.
+
+    Parameters
+    ----------
+    topics : sequence of RawTopic
+        The recording's.
+    labels : callable
+        Tells the labels of an array topic's dimensions.
+    namespace : str, optional
+        Namespace of the node whose inputs are wanted; needed only if several have been recorded.
+    remap : mapping of str to str
+        From the contract's relative names to the recording's.
+    """
+
+    def __init__(
+        self,
+        topics: Sequence[RawTopic],
+        labels: Labels,
+        *,
+        namespace: str | None = None,
+        remap: Mapping[str, str] | None = None,
+    ) -> None:
+        self._topics = [topic for topic in topics if topic.messages]
+        self._empty = [topic for topic in topics if not topic.messages]
+        self._labels = labels
+        self._namespace = namespace
+        self._remap = {name.strip("/"): target for name, target in (remap or {}).items()}
+
+    def joint_topics(self, source: str, joint: str | None = None) -> JointTopics:
+        """Find the topics of a joint whose ``input.source`` is `source`.
+
+        Parameters
+        ----------
+        source : str
+        joint : str, optional
+            Name below which the vibration topic stands; None if one joint is watched, whose topics stand alone.
+
+        Raises
+        ------
+        BagError
+            If a topic is not there, or more than one could be meant.
+        """
+        motion = self._find(MOTION_SOURCE, MOTION_SOURCE.topic)
+        if source not in VIBRATION_SOURCES:
+            return JointTopics(None, motion)
+        wanted = VIBRATION_SOURCES[source]
+        name = wanted.topic if joint is None else f"{joint}/{wanted.topic}"
+        return JointTopics(self._find(wanted, name), motion)
+
+    def prefixes(self, source: str) -> list[str]:
+        """Namespaces, without the slashes around them, in which the vibration topic of `source` stands."""
+        wanted = VIBRATION_SOURCES[source]
+        suffix = f"/{wanted.topic}"
+        return [t.name.removesuffix(suffix).strip("/") for t in self._of_type(wanted) if t.name.endswith(suffix)]
+
+    def has(self, source: str) -> bool:
+        """Whether a topic for `source` stands in the recording by the contract's name, or by remapping."""
+        wanted = VIBRATION_SOURCES.get(source, MOTION_SOURCE)
+        return wanted.topic in self._remap or any(_ends(topic.name, wanted.topic) for topic in self._of_type(wanted))
+
+    def _of_type(self, source: Source) -> list[RawTopic]:
+        kind = source.type.replace("/", "/msg/")
+        return [topic for topic in self._topics if topic.type == kind]
+
+    def _find(self, source: Source, name: str) -> str:
+        found = self._of_type(source)
+        if name in self._remap:
+            return self._exact(found, self._absolute(self._remap[name]), source)
+        if self._namespace is not None:
+            return self._exact(found, self._absolute(name), source)
+        named = [topic.name for topic in found if _ends(topic.name, name)]
+        if f"/{name}" in named:
+            return f"/{name}"
+        if not named and "/" not in name.removesuffix(source.topic):
+            named = [topic.name for topic in found if self._speaks(source, topic)]
+        if len(named) == 1:
+            return named[0]
+        if named:
+            raise BagError(
+                f"{', '.join(named)} could all be {name}; choose one with --namespace or --remap {name}:={named[0]}"
+            )
+        raise BagError(f"no {name} ({source.type}) was recorded: {self._instead(source, name)}")
+
+    def _exact(self, found: Sequence[RawTopic], name: str, source: Source) -> str:
+        if any(topic.name == name for topic in found):
+            return name
+        raise BagError(f"no {name} ({source.type}) was recorded: {self._instead(source, name)}")
+
+    def _absolute(self, name: str) -> str:
+        if name.startswith("/"):
+            return name
+        namespace = (self._namespace or "").strip("/")
+        return f"/{namespace}/{name}" if namespace else f"/{name}"
+
+    def _speaks(self, source: Source, topic: RawTopic) -> bool:
+        """Whether a topic of an unexpected name is meant: an array says so by its label, other types by themselves."""
+        return source.type != "std_msgs/Float64MultiArray" or BLOCK_LABEL in self._labels(topic.name)
+
+    def _instead(self, source: Source, name: str) -> str:
+        for topic in self._topics:
+            if _ends(topic.name, name):
+                return f"{topic.name} is there, but as {topic.type.replace('/msg/', '/')}"
+        if any(_ends(topic.name, name) for topic in self._empty):
+            return "the topic is there, but without a message"
+        there = [f"{topic.name} ({topic.type.replace('/msg/', '/')})" for topic in self._topics]
+        listed = ", ".join(there[:6]) + (f" and {len(there) - 6} more" if len(there) > 6 else "")
+        return f"it holds {listed}; see --remap and input.source"
+
+
+def _ends(topic: str, name: str) -> bool:
+    return topic.endswith("/" + name.lstrip("/"))

@@ -1,0 +1,95 @@
+"""Topics are found by name, type and content, in any namespace; doubt is a question, not a guess."""
+
+from collections.abc import Mapping
+
+import pytest
+from hd_monitor.offline.errors import BagError
+from hd_monitor.offline.salvage import RawTopic
+from hd_monitor.offline.topics import JointTopics, TopicFinder
+
+ARRAY, ACCEL = "std_msgs/msg/Float64MultiArray", "geometry_msgs/msg/AccelStamped"
+IMU, STATE = "sensor_msgs/msg/Imu", "sensor_msgs/msg/JointState"
+BLOCK = "torsional_acceleration/block"
+
+
+def finder(
+    topics: Mapping[str, str],
+    *,
+    labels: Mapping[str, str] | None = None,
+    namespace: str | None = None,
+    remap: Mapping[str, str] | None = None,
+    empty: tuple[str, ...] = (),
+) -> TopicFinder:
+    raw = [RawTopic(name, kind, 0 if name in empty else 5) for name, kind in topics.items()]
+    return TopicFinder(raw, lambda name: ((labels or {}).get(name, ""),), namespace=namespace, remap=remap)
+
+
+def test_plain_names() -> None:
+    find = finder({f"/{BLOCK}": ARRAY, "/joint_states": STATE, "/zoom_spectrum": ARRAY})
+    assert find.joint_topics("block") == JointTopics(f"/{BLOCK}", "/joint_states")
+
+
+@pytest.mark.parametrize(
+    ("source", "kind", "topic"),
+    [("accel_stamped", ACCEL, "torsional_acceleration"), ("imu", IMU, "imu/data_raw")],
+)
+def test_every_source_has_its_topic(source: str, kind: str, topic: str) -> None:
+    find = finder({f"/arm/{topic}": kind, "/arm/joint_states": STATE})
+    assert find.joint_topics(source) == JointTopics(f"/arm/{topic}", "/arm/joint_states")
+
+
+def test_the_sensorless_mode_needs_joint_states_only() -> None:
+    assert finder({"/joint_states": STATE}).joint_topics("joint_effort") == JointTopics(None, "/joint_states")
+
+
+def test_several_joints_have_their_topics_below_their_names() -> None:
+    find = finder({f"/elbow/{BLOCK}": ARRAY, f"/wrist/{BLOCK}": ARRAY, "/joint_states": STATE})
+    assert find.joint_topics("block", "wrist").vibration == f"/wrist/{BLOCK}"
+    assert sorted(find.prefixes("block")) == ["elbow", "wrist"]
+
+
+def test_several_candidates_are_listed_and_the_root_goes_first() -> None:
+    topics = {f"/left/{BLOCK}": ARRAY, f"/right/{BLOCK}": ARRAY, "/joint_states": STATE}
+    with pytest.raises(BagError, match=r"/left/.*/right/.*--namespace"):
+        finder(topics).joint_topics("block")
+    assert finder(topics | {f"/{BLOCK}": ARRAY}).joint_topics("block").vibration == f"/{BLOCK}"
+
+
+def test_a_namespace_chooses() -> None:
+    topics = {f"/{side}/{topic}": kind for side in "lr" for topic, kind in ((BLOCK, ARRAY), ("joint_states", STATE))}
+    find = finder(topics, namespace="/r")
+    assert find.joint_topics("block") == JointTopics(f"/r/{BLOCK}", "/r/joint_states")
+    with pytest.raises(BagError, match="no /x/joint_states"):
+        finder(topics, namespace="x").joint_topics("block")
+
+
+def test_remapping_goes_before_everything() -> None:
+    find = finder(
+        {f"/{BLOCK}": ARRAY, "/my/blocks": ARRAY, "/js": STATE}, remap={BLOCK: "/my/blocks", "joint_states": "js"}
+    )
+    assert find.joint_topics("block") == JointTopics("/my/blocks", "/js")
+    with pytest.raises(BagError, match="no /nowhere"):
+        finder({"/js": STATE}, remap={"joint_states": "/nowhere"}).joint_topics("joint_effort")
+
+
+def test_an_odd_name_is_found_by_its_type_or_by_its_label() -> None:
+    find = finder(
+        {"/rig/blocks": ARRAY, "/zoom": ARRAY, "/js": STATE, "/a": ACCEL},
+        labels={"/rig/blocks": "torsional_acceleration", "/zoom": "bin"},
+    )
+    assert find.joint_topics("block") == JointTopics("/rig/blocks", "/js")
+    assert find.joint_topics("accel_stamped").vibration == "/a"
+
+
+@pytest.mark.parametrize(
+    ("topics", "empty", "words"),
+    [
+        ({"/camera": "sensor_msgs/msg/Image"}, (), r"it holds /camera \(sensor_msgs/Image\)"),
+        ({"/joint_states": "my_msgs/msg/JointState"}, (), "is there, but as my_msgs/JointState"),
+        ({"/joint_states": STATE, "/x": STATE, "/y": STATE}, ("/joint_states", "/x", "/y"), "without a message"),
+    ],
+)
+def test_what_is_missing_is_said_with_what_is_there(topics: dict[str, str], empty: tuple[str, ...], words: str) -> None:
+    with pytest.raises(BagError, match=words) as caught:
+        finder(topics, empty=empty).joint_topics("joint_effort")
+    assert "\n" not in str(caught.value)
