@@ -1,0 +1,179 @@
+"""A bench with real node processes, and what comes out on /diagnostics."""
+
+import array
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pytest
+from hd_monitor.contract import Block, pack_block
+
+MONITOR, RIG = "hd_monitor.ros.node", "hd_sim_node.node"
+OK, WARN, ERROR = 0, 1, 2
+QUICK = ("time_scale:=10.0", "wait_for_subscribers:=1", "programme:=dwell", "dwell.first:=400.0", "dwell.last:=1000.0")
+"""A rig that runs through 400, 500 … 1000 rpm and back in about four seconds."""
+NANOSECONDS = 1_000_000_000
+
+
+@dataclass(frozen=True)
+class Shown:
+    """One DiagnosticStatus."""
+
+    name: str
+    level: int
+    message: str
+    hardware_id: str
+    values: dict[str, str]
+
+    @property
+    def component(self) -> str:
+        return self.values["component"]
+
+    @property
+    def fault_code(self) -> str:
+        return self.values["fault_code"]
+
+    def number(self, key: str) -> float:
+        return float(self.values[key])
+
+
+def arguments_of(parameters: tuple[str, ...]) -> list[str]:
+    """Turn ``name:=value`` into parameters and ``from->to`` into remappings."""
+    words = ["--ros-args"] if parameters else []
+    for parameter in parameters:
+        words += ["-r", parameter.replace("->", ":=")] if "->" in parameter else ["-p", parameter]
+    return words
+
+
+class Bench:
+    """Starts nodes and waits for what they say; a node that dies ends the wait with its own words."""
+
+    def __init__(self, peer: Any, start_module: Callable[..., Any]) -> None:
+        from diagnostic_msgs.msg import DiagnosticArray
+
+        self.peer = peer
+        self._start_module = start_module
+        self._processes: list[Any] = []
+        self.statuses: list[Shown] = []
+        self.arrays: list[Any] = peer.collect(DiagnosticArray, "/diagnostics", match=False)
+        self._read = 0
+
+    def monitor(self, *parameters: str) -> Any:
+        return self._start(MONITOR, parameters)
+
+    def rig(self, *parameters: str) -> Any:
+        return self._start(RIG, parameters)
+
+    def _start(self, module: str, parameters: tuple[str, ...]) -> Any:
+        process = self._start_module(module, *arguments_of(parameters))
+        self._processes.append(process)
+        return process
+
+    def forget(self) -> None:
+        """Let only what comes from now on count."""
+        self._update()
+        self.statuses.clear()
+
+    def _update(self) -> None:
+        for message in self.arrays[self._read :]:
+            for status in message.status:
+                values = {pair.key: pair.value for pair in status.values}
+                self.statuses.append(
+                    Shown(status.name, int.from_bytes(status.level), status.message, status.hardware_id, values)
+                )
+        self._read = len(self.arrays)
+
+    def until(self, condition: Callable[[], object], what: str) -> None:
+        def met() -> object:
+            self._update()
+            for process in self._processes:
+                if not process.running:
+                    pytest.fail(f"a node ended while the test waited for {what}:\n{process.output}")
+            return condition()
+
+        try:
+            self.peer.until(met, what)
+        except pytest.fail.Exception as failure:
+            last = self.statuses[-1] if self.statuses else "none at all"
+            pytest.fail(f"{failure}\nlast status: {last}")
+
+    def until_status(self, accepts: Callable[[Shown], object], what: str) -> Shown:
+        """Wait for a status and return it."""
+        checked = 0
+        found: list[Shown] = []
+
+        def met() -> bool:
+            nonlocal checked
+            found.extend(status for status in self.statuses[checked:] if accepts(status))
+            checked = len(self.statuses)
+            return bool(found)
+
+        self.until(met, what)
+        return found[0]
+
+
+@pytest.fixture
+def bench(peer: Any, start_module: Callable[..., Any]) -> Iterator[Bench]:
+    """Give a bench on this test process's own ROS domain."""
+    return Bench(peer, start_module)
+
+
+class Feeder:
+    """Publishes vibration blocks and joint states of a joint that turns evenly, made by hand."""
+
+    RATE, SAMPLES, SPEED = 1000, 50, 750.0  # Hz, samples a block, rpm
+
+    def __init__(self, peer: Any, *, namespace: str = "", joint: str = "joint", qos: Any = None) -> None:
+        from rclpy.qos import QoSProfile
+        from sensor_msgs.msg import JointState
+        from std_msgs.msg import Float64MultiArray
+
+        self._peer = peer
+        self._joint = joint
+        qos = qos or QoSProfile(depth=1000)
+        self.blocks = peer.node.create_publisher(Float64MultiArray, f"{namespace}torsional_acceleration/block", qos)
+        self.motion = peer.node.create_publisher(JointState, f"{namespace}joint_states", qos)
+        self._sequence = 0
+        self._start = peer.node.get_clock().now().nanoseconds
+
+    def matched(self) -> bool:
+        return bool(self.blocks.get_subscription_count() and self.motion.get_subscription_count())
+
+    def block(self, samples: Any = None, *, label: str | None = None) -> Any:
+        """Return the next block: a plain sine, the samples given, or a wrong label."""
+        from std_msgs.msg import Float64MultiArray, MultiArrayDimension
+
+        stamp = self._start + self._sequence * self.SAMPLES * NANOSECONDS // self.RATE
+        times = (stamp - self._start) / NANOSECONDS + np.arange(self.SAMPLES) / self.RATE
+        values = np.sin(2 * np.pi * 2 * self.SPEED / 60 * times) if samples is None else samples
+        dimension, data = pack_block(Block(stamp, 1 / self.RATE, self._sequence, values))
+        message = Float64MultiArray(data=array.array("d", data.tobytes()))
+        message.layout.data_offset = 4
+        message.layout.dim = [
+            MultiArrayDimension(label=label or dimension.label, size=dimension.size, stride=dimension.stride)
+        ]
+        return message
+
+    def send(self, blocks: int = 20, *, label: str | None = None, samples: Any = None, motion: bool = True) -> None:
+        """Publish some blocks and the joint states of the same time."""
+        from sensor_msgs.msg import JointState
+
+        for _ in range(blocks):
+            start = self._sequence * self.SAMPLES / self.RATE
+            self.blocks.publish(self.block(samples, label=label))
+            for step in range(5):
+                time = start + step * self.SAMPLES / self.RATE / 5
+                speed = self.SPEED * 2 * np.pi / 60 / 80
+                message = JointState(name=[self._joint], position=[speed * time], velocity=[speed], effort=[10.0])
+                stamp = self._start + round(time * NANOSECONDS)
+                message.header.stamp.sec, message.header.stamp.nanosec = divmod(stamp, NANOSECONDS)
+                if motion:
+                    self.motion.publish(message)
+            self._sequence += 1
+
+
+@pytest.fixture
+def feeder(peer: Any) -> Feeder:
+    """Give a feeder of hand-made messages."""
+    return Feeder(peer)

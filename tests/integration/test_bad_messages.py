@@ -1,0 +1,101 @@
+"""Messages that say nothing are reported and survived: good ones behind them count as ever."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from .conftest import Bench, Feeder
+
+pytestmark = pytest.mark.ros
+
+
+@pytest.fixture
+def listening(bench: Bench, feeder: Feeder) -> Bench:
+    bench.monitor("input.timeout:=0.5")
+    bench.until(feeder.matched, "the monitor's subscriptions")
+    return bench
+
+
+def assert_recovers(bench: Bench, feeder: Feeder) -> None:
+    before = bench.statuses[-1].number("samples") if bench.statuses else 0
+    bench.forget()
+
+    def counted() -> bool:
+        feeder.send(2)
+        return bool(bench.statuses) and bench.statuses[-1].number("samples") >= before + 1000
+
+    bench.until(counted, "good samples to be counted again")
+    status = bench.until_status(lambda s: s.fault_code not in ("HD_INPUT_LOST", "HD_INPUT_INVALID"), "a recovery")
+    assert float(status.values["speed (rpm)"]) == pytest.approx(Feeder.SPEED, rel=0.01)
+
+
+def test_wrong_layout(listening: Bench, feeder: Feeder) -> None:
+    def reported() -> bool:
+        feeder.send(1, label="vibration")
+        return any(s.fault_code == "HD_INPUT_INVALID" for s in listening.statuses)
+
+    listening.until(reported, "a report of the wrong layout")
+    status = next(s for s in listening.statuses if s.fault_code == "HD_INPUT_INVALID")
+    assert "labelled 'vibration'; the contract asks for 'torsional_acceleration'" in status.message
+    assert status.number("rejected messages") >= 1
+    assert_recovers(listening, feeder)
+
+
+def test_array_without_a_layout(listening: Bench, feeder: Feeder) -> None:
+    from std_msgs.msg import Float64MultiArray
+
+    feeder.blocks.publish(Float64MultiArray())
+    feeder.blocks.publish(Float64MultiArray(data=[1.0, 2.0]))
+    listening.until_status(lambda s: s.number("rejected messages") == 2, "two rejected messages")
+    assert_recovers(listening, feeder)
+
+
+def test_nan_samples(listening: Bench, feeder: Feeder) -> None:
+    def reported() -> bool:
+        feeder.send(1, samples=np.full(Feeder.SAMPLES, np.nan))
+        return any(s.number("not finite") >= 1000 for s in listening.statuses)
+
+    listening.until(reported, "a count of what is not finite")
+    status = next(s for s in listening.statuses if s.number("not finite") >= 1000)
+    assert status.component == "undetermined"
+    assert status.level > 0
+    assert "not finite" in status.values["last complaint"]
+    assert_recovers(listening, feeder)
+
+
+def test_joint_states_of_nan_and_of_unequal_lengths(listening: Bench, feeder: Feeder) -> None:
+    from sensor_msgs.msg import JointState
+
+    nan = float("nan")
+    for _ in range(50):
+        feeder.motion.publish(JointState(name=["joint"], position=[nan], velocity=[nan], effort=[nan]))
+        feeder.motion.publish(JointState(name=["joint"], position=[1.0, 2.0]))
+        feeder.motion.publish(JointState())
+    listening.until_status(lambda s: s.number("rejected messages") >= 50, "rejected joint states")
+    assert_recovers(listening, feeder)
+
+
+def test_stamps_that_stand_still(listening: Bench, feeder: Feeder) -> None:
+    block = feeder.block()
+
+    def reported() -> bool:
+        block.data[3] += 1.0
+        feeder.blocks.publish(block)
+        return any("stand still" in s.message for s in listening.statuses)
+
+    listening.until(reported, "a report of stamps that stand still")
+    assert_recovers(listening, feeder)
+
+
+def test_half_a_message_never_ends_the_node(listening: Bench, feeder: Feeder, peer: Any) -> None:
+    rng = np.random.default_rng(7)
+    for size in (0, 1, 3, 4, 5, 53):
+        message = feeder.block()
+        message.data = message.data[:size]
+        feeder.blocks.publish(message)
+    message = feeder.block(rng.normal(size=Feeder.SAMPLES))
+    message.data[2] = -1.0  # sample period
+    feeder.blocks.publish(message)
+    listening.until_status(lambda s: s.number("rejected messages") >= 7, "seven rejected messages")
+    assert_recovers(listening, feeder)
