@@ -196,7 +196,9 @@ class _Reader:
         self.left = flatten(values)
 
     def number(self, name: str, default: float) -> float:
-        value = self.left.pop(name, default)
+        if name not in self.left:
+            return default
+        value = self.left.pop(name)
         if isinstance(value, bool) or not isinstance(value, (int, float)) or not np.isfinite(value):
             raise ParameterError(f"{self.source}: {name} = {value!r} is not a finite number")
         return float(value)

@@ -112,7 +112,7 @@ def curve(case: Case) -> Exhibit:
         caption=f"RMS of the tangential acceleration at {case.sensor_radius:g} m in the steady state.",
         panels=(curve_panel(case, measured, "Property curve"),),
         facts=(
-            ("highest", f"{rms:.3g} g at {speed:g} rpm"),
+            ("highest", f"{rms:.3g} g at {speed:g} rpm" if rms > 0.0 else "none: no stable speed"),
             ("peaks", ", ".join(f"{n:g}" for n in measured.peaks) + " rpm"),
             (
                 "unstable speeds (left out of the curve)",

@@ -41,7 +41,9 @@ class PropertyCurve:
 
     @property
     def highest(self) -> tuple[float, float]:
-        """Speed [rpm] and RMS [g] of the highest peak."""
+        """Speed [rpm] and RMS [g] of the highest point; NaN where every speed is unstable."""
+        if np.isnan(self.rms).all():
+            return float("nan"), float("nan")
         best = int(np.nanargmax(self.rms))
         return float(self.speed[best]), float(self.rms[best])
 
@@ -57,13 +59,14 @@ def property_curve(case: Case, speeds: FloatArray | None = None) -> PropertyCurv
 def curve_panel(case: Case, curve: PropertyCurve, title: str, top: float | None = None) -> Panel:
     """Draw a property curve as figures 16 and 18 do."""
     low, high = float(curve.speed[0]), float(curve.speed[-1])
+    top = curve.highest[1] if top is None else top
     return Panel(
         title=title,
         x_label="wave-generator speed (rpm)",
         y_label="RMS of tangential acceleration (g)",
         curves=(Curve(x=curve.speed, y=curve.rms, style="dotted points"),),
         marks=tuple(mark for mark in resonance_marks(case) if low <= mark.at <= high),
-        y_range=(0.0, 1.25 * (top or float(np.nanmax(curve.rms)))),
+        y_range=(0.0, 1.25 * top) if top > 0.0 else None,
     )
 
 
