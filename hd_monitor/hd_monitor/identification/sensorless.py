@@ -1,5 +1,6 @@
 """The two splines' shares from joint states alone: motor effort or velocity as the vibration signal."""
 
+import math
 from collections import deque
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -11,9 +12,10 @@ from ..acquisition.record import JointSamples
 from ..reducer import LinePair, Mount
 from ..settings import JointSettings
 from .agreement import DirectionEvidence, reasons_against_naming
-from .pair_evidence import Gram, PairEstimate, PairOrders, estimate_pair, gram_of_stroke, residual_of_stroke
+from .pair_evidence import PairEstimate, estimate_pair
 from .result import Identification, LineEstimate
-from .strokes import Stroke, StrokeCutter
+from .stroke_sums import Gram, PairOrders, gram_of_stroke, residual_of_stroke
+from .strokes import Stroke, StrokeCutter, one_speed
 from .whitening import learn_whitening
 
 FloatArray = npt.NDArray[np.float64]
@@ -80,7 +82,7 @@ class SensorlessIdentifier:
         harmonics = range(1, settings["analysis.harmonics"] + 1)
         self._orders = [PairOrders.around(LinePair(cs, fs), k, (reduction, 2.0 * reduction)) for k in harmonics]
         minimum_speed = settings["analysis.minimum_speed"] * 2.0 * np.pi / 60.0 / reduction
-        self._cutter = StrokeCutter(settings["input.source"], fs, minimum_speed)
+        self._cutter = StrokeCutter(settings["input.source"], (cs, fs), minimum_speed)
         self._pooled: deque[_Pooled] = deque()
         self._coefficients = np.ones(1)
         self._learnt = 0.0
@@ -231,6 +233,13 @@ class SensorlessIdentifier:
             doubts.append(
                 "the larger line comes exactly twice per wave-generator revolution, as ripple of the motor and a bent "
                 "shaft do: check the motor too"
+            )
+        speed = one_speed(pooled.stroke for pooled in self._pooled)
+        if np.isfinite(speed):
+            lower, upper = (order * speed / math.tau for order in self._reducer.output_orders)
+            doubts.append(
+                f"the joint turned at one speed: a fixed frequency of the machine at {lower:.1f} or {upper:.1f} Hz "
+                "would look the same"
             )
         if self._cutter.too_fast > 0.1 * self._cutter.turning:
             doubts.append(

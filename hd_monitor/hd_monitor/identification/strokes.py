@@ -2,6 +2,7 @@
 
 import itertools
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -32,6 +33,9 @@ SHORTEST = 40
 
 GAP = 2.5
 """Sample periods between two messages above which something is missing."""
+
+ONE_SPEED = 0.1
+"""Part of the speed by which the middle half of all rows must differ for the speed to count as varied."""
 
 SPEED_SPAN = 0.04
 """s over which speed is taken from positions where messages carry none."""
@@ -109,16 +113,16 @@ class StrokeCutter:
     ----------
     source : str
         ``'joint_effort'`` or ``'joint_velocity'``: the field that is the vibration signal.
-    order : float
-        Cycles per output revolution of the highest line looked for.
+    orders : tuple of float
+        Cycles per output revolution of the lowest and the highest line looked for.
     minimum_speed : float
         Output speed [rad/s] below which the joint counts as standing.
     """
 
-    def __init__(self, source: str, order: float, minimum_speed: float) -> None:
+    def __init__(self, source: str, orders: tuple[float, float], minimum_speed: float) -> None:
         self._source = source
-        self._order = order
-        self._minimum = max(minimum_speed, LOWEST_FREQUENCY * math.tau / order)
+        self._lowest, highest = orders
+        self._minimum = max(minimum_speed, LOWEST_FREQUENCY * math.tau / highest)
         self._pending = np.empty((0, 4))
         self._recent = np.empty((0, 4))
         self._period: float | None = None
@@ -153,6 +157,11 @@ class StrokeCutter:
         self._pending = rows[first:]
         return strokes
 
+    def finish(self) -> list[Stroke]:
+        """Return the stroke that is still open, if it is worth one: no more messages will come."""
+        rows, self._pending = self._pending, np.empty((0, 4))
+        return self._close(rows) if len(rows) and abs(rows[0, 2]) >= self._minimum else []
+
     def _close(self, rows: FloatArray) -> list[Stroke]:
         """The stroke of these rows, if it is worth one, less those in which the lines are too fast for the rate."""
         if len(rows) < SHORTEST:
@@ -162,7 +171,7 @@ class StrokeCutter:
         period = self._period
         averaged = max(1, int(1.0 / period / WORKING_RATE))
         self.turning += len(rows) * period
-        limit = HIGHEST_SHARE / (period * averaged) * math.tau / self._order
+        limit = HIGHEST_SHARE / (period * averaged) * math.tau / self._lowest
         fast = np.abs(rows[:, 2]) > limit
         self.too_fast += float(np.count_nonzero(fast)) * period
         if np.count_nonzero(~fast) < SHORTEST * averaged:
@@ -171,17 +180,16 @@ class StrokeCutter:
         return [] if stroke is None else [stroke]
 
 
-def strokes_of_record(record: Record, order: float, minimum_speed: float) -> list[Stroke]:
-    """Cut a record of accelerations into strokes, as `StrokeCutter` does with joint samples."""
-    cutter = StrokeCutter("joint_effort", order, minimum_speed)
-    samples = JointSamples(times=record.times, angle=record.angle, speed=record.speed, effort=record.acceleration)
-    ending = JointSamples(
-        times=record.times[-1:] + record.period,
-        angle=record.angle[-1:],
-        speed=np.zeros(len(record.times[-1:])),
-        effort=np.zeros(len(record.times[-1:])),
+def samples_of_records(records: Iterable[Record]) -> JointSamples:
+    """Accelerations in place of the effort, so that records can be cut into strokes like joint states."""
+    parts = list(records)
+    empty = [np.empty(0)]
+    return JointSamples(
+        times=np.concatenate([part.times for part in parts] or empty),
+        angle=np.concatenate([part.angle for part in parts] or empty),
+        speed=np.concatenate([part.speed for part in parts] or empty),
+        effort=np.concatenate([part.acceleration for part in parts] or empty),
     )
-    return cutter.add(samples) + cutter.add(ending)
 
 
 def _speeds(rows: FloatArray) -> FloatArray:
@@ -229,3 +237,15 @@ def _stroke(rows: FloatArray, good: BoolArray, period: float, averaged: int) -> 
         averaged=averaged,
         rate=1.0 / (period * averaged),
     )
+
+
+def one_speed(strokes: Iterable[Stroke]) -> float:
+    """Output speed [rad/s] if nearly all of the motion was at one; NaN if it varied.
+
+    At one speed a fixed frequency of the machine, or a tone of its supply, is no different from a line.
+    """
+    speeds = [stroke.speed for stroke in strokes]
+    if not speeds:
+        return float("nan")
+    low, middle, high = np.percentile(np.concatenate(speeds), [25.0, 50.0, 75.0]).tolist()
+    return float(middle) if high - low < ONE_SPEED * middle else float("nan")
