@@ -59,9 +59,10 @@ class Stream:
 
     def lag(self, clock: float) -> float:
         """Seconds of the clock by which the newest message handed out is behind what is due."""
-        if self.ended or self._waiting is None:
+        if self.ended:
             return 0.0
-        return max(0.0, (self._target(clock) - self._waiting[0]) / NANOSECONDS / self._scale)
+        due = self._sent if self._waiting is None else self._waiting[0]
+        return max(0.0, (self._target(clock) - due) / NANOSECONDS / self._scale)
 
     def due(self, clock: float) -> Iterator[tuple[Stretch, str, int]]:
         """Yield (stretch, topic, row) of the messages due at `clock` [s] that were not handed out before."""

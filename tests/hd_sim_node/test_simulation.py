@@ -1,0 +1,190 @@
+"""The stream of messages: every sample once, at its time, in both forms, reproducible and changeable."""
+
+import math
+
+import numpy as np
+import pytest
+from hd_monitor.errors import ParameterError
+from hd_sim_node.settings import RigSettings
+from hd_sim_node.simulation import Simulation
+
+from hd_monitor import contract
+
+BASE = {"programme": "fixed", "fixed.speed": 1600.0, "duration": 2.0, "sensor.noise": 0.0}
+
+
+def simulate(**changes):
+    given = BASE | {name.replace("__", "."): value for name, value in changes.items()}
+    return Simulation(RigSettings.from_mapping(given))
+
+
+def messages(simulation):
+    return [message for stretch in simulation for message in stretch.schedule()]
+
+
+def test_publishes_every_sample_in_blocks_and_one_by_one():
+    stretches = list(simulate(publish="both", block_size=40))
+    samples = np.concatenate([s.samples for s in stretches])
+    blocks = [block for s in stretches for block in s.blocks]
+    assert samples.size == 2000
+    np.testing.assert_array_equal(np.concatenate([block.samples for block in blocks]), samples)
+    assert [block.sequence for block in blocks] == list(range(50))
+    assert [block.stamp for block in blocks] == [n * 40_000_000 for n in range(50)]
+    assert {block.period for block in blocks} == {1e-3}
+
+
+def test_messages_go_out_in_order_and_when_their_newest_sample_is_there():
+    sent = messages(simulate(publish="both", publish_imu=True, block_size=50))
+    dues = [due for due, _, _ in sent]
+    assert dues == sorted(dues)
+    first_block = next(due for due, topic, _ in sent if topic == contract.TORSIONAL_ACCELERATION_BLOCK)
+    assert first_block == 49_000_000
+    counts = {topic: sum(t == topic for _, t, _ in sent) for topic in {t for _, t, _ in sent}}
+    assert counts == {
+        contract.TORSIONAL_ACCELERATION_BLOCK: 40,
+        contract.TORSIONAL_ACCELERATION: 2000,
+        contract.IMU: 2000,
+        contract.JOINT_STATES: 200,
+    }
+
+
+@pytest.mark.parametrize(
+    ("publish", "imu", "topics"),
+    [
+        ("block", False, {contract.TORSIONAL_ACCELERATION_BLOCK}),
+        ("samples", False, {contract.TORSIONAL_ACCELERATION}),
+        ("none", True, {contract.IMU}),
+        ("none", False, set()),
+    ],
+)
+def test_publishes_what_is_asked_for_and_joint_states_always(publish, imu, topics):
+    assert set(simulate(publish=publish, publish_imu=imu).topics) == topics | {contract.JOINT_STATES}
+
+
+@pytest.mark.parametrize("block_size", [1, 7, 50, 999, 2500])
+def test_the_block_size_does_not_change_the_samples(block_size):
+    plain = np.concatenate([s.samples for s in simulate(sensor__noise=0.2, seed=3)])
+    other = np.concatenate(
+        [s.samples for s in simulate(sensor__noise=0.2, seed=3, block_size=block_size, duration=3.0)]
+    )
+    common = min(plain.size, other.size)
+    np.testing.assert_allclose(other[:common], plain[:common], atol=1e-9)
+
+
+def test_ends_with_the_programme_in_whole_blocks():
+    assert sum(s.samples.size for s in simulate(duration=0.777, block_size=50)) == 750
+    assert sum(s.samples.size for s in simulate(duration=0.01, block_size=50)) == 50
+    simulation = simulate(duration=0.0, cycles=2, fixed__time=0.5)
+    assert sum(s.samples.size for s in simulation) == 1000
+    assert simulation.advance() is None
+
+
+def test_a_programme_without_end_goes_on():
+    simulation = simulate(duration=0.0)
+    for _ in range(20):
+        assert simulation.advance() is not None
+
+
+def test_no_rounding_costs_the_last_block():
+    """0.3 s at 1 kHz is 299.99… samples in floating point."""
+    assert sum(s.samples.size for s in simulate(duration=0.3, block_size=100)) == 300
+
+
+def test_loss_shows_in_what_is_sent_not_in_the_sequence_numbers():
+    simulation = simulate(transport__loss=0.3, duration=20.0, seed=1)
+    sequences = [
+        stretch.blocks[row].sequence
+        for stretch in simulation
+        for _, topic, row in stretch.schedule()
+        if topic == contract.TORSIONAL_ACCELERATION_BLOCK
+    ]
+    assert sequences == sorted(set(sequences))
+    assert len(sequences) / 400 == pytest.approx(0.7, abs=4 * math.sqrt(0.21 / 400))
+
+
+def test_joint_states_are_lost_by_their_own_rate():
+    sent = messages(simulate(joint_states__loss=0.5, transport__loss=0.0, duration=10.0))
+    assert sum(topic == contract.TORSIONAL_ACCELERATION_BLOCK for _, topic, _ in sent) == 200
+    assert 400 < sum(topic == contract.JOINT_STATES for _, topic, _ in sent) < 600
+
+
+def test_the_same_seed_gives_the_same_messages():
+    def fingerprint(seed):
+        return [
+            (stretch.samples.tobytes(), stretch.stamps.tobytes(), list(stretch.schedule()))
+            for stretch in simulate(
+                seed=seed, sensor__noise=1.0, sensor__jitter=1e-4, transport__loss=0.1, transport__late=0.1
+            )
+        ]
+
+    assert fingerprint(5) == fingerprint(5)
+    assert fingerprint(5) != fingerprint(6)
+
+
+def test_message_rates_are_those_of_the_topics():
+    simulation = simulate(publish="both", sensor__rate=2000.0, block_size=50, joint_states__rate=125.0)
+    rates = {topic: simulation.message_rate(topic) for topic in simulation.topics}
+    assert rates == {
+        contract.TORSIONAL_ACCELERATION_BLOCK: 40.0,
+        contract.TORSIONAL_ACCELERATION: 2000.0,
+        contract.JOINT_STATES: 125.0,
+    }
+
+
+class TestChanges:
+    def test_a_defect_may_appear_while_it_runs(self):
+        simulation = simulate(defect="none", duration=8.0)
+        before = np.concatenate([s.samples for _, s in zip(range(16), simulation, strict=False)])
+        simulation.change(RigSettings.from_mapping(BASE | {"defect": "flexspline", "duration": 8.0}))
+        after = np.concatenate([s.samples for s in simulation])
+        assert after.size == 8000 - before.size
+        assert after[-1500:].std() > 3 * before[-1500:].std()
+
+    def test_the_motion_carries_on(self):
+        simulation = simulate(duration=1.0)
+        first = simulation.advance()
+        simulation.change(RigSettings.from_mapping(BASE | {"torque.mean": 20.0, "duration": 1.0}))
+        second = simulation.advance()
+        assert first is not None
+        assert second is not None
+        step = second.motion.angle[0] - first.motion.angle[-1]
+        assert step == pytest.approx(first.motion.angle[1] - first.motion.angle[0], rel=1e-9)
+
+    def test_noise_and_transport_change_too(self):
+        simulation = simulate(duration=10.0, defect="custom")
+        simulation.advance()
+        changed = {"defect": "custom", "sensor.noise": 2.0, "transport.loss": 1.0, "joint_states.effort": "none"}
+        simulation.change(RigSettings.from_mapping(BASE | changed))
+        stretch = simulation.advance()
+        assert stretch is not None
+        assert stretch.samples.std() == pytest.approx(2.0, rel=0.3)
+        assert stretch.dispatch[contract.TORSIONAL_ACCELERATION_BLOCK].row.size == 0
+        assert stretch.dispatch[contract.JOINT_STATES].row.size > 0
+        assert stretch.joint.effort is None
+
+    def test_a_refused_change_changes_nothing(self):
+        simulation = simulate(fixed__speed=3300.0)
+        before = simulation.settings
+        wild = BASE | {"fixed.speed": 3300.0, "defect": "custom", "circular_spline.beta": [0.14]}
+        with pytest.raises(ParameterError, match="unstable at 3300 rpm"):
+            simulation.change(RigSettings.from_mapping(wild))
+        assert simulation.settings is before
+
+
+class TestStability:
+    WILD = {"fixed__speed": 3300.0, "defect": "custom", "circular_spline__beta": [0.14]}
+
+    def test_an_unstable_rig_is_refused(self):
+        with pytest.raises(ParameterError, match="unstable at 3300 rpm"):
+            simulate(**self.WILD)
+
+    def test_or_warned_of(self):
+        simulation = simulate(**self.WILD, unstable="warn")
+        assert "3300 rpm" in simulation.warning
+        assert simulation.advance() is not None
+
+    def test_or_let_run(self):
+        assert simulate(**self.WILD, unstable="ignore").warning == ""
+
+    def test_a_stable_one_has_no_warning(self):
+        assert simulate(unstable="warn").warning == ""
