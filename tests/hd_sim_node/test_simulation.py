@@ -171,20 +171,21 @@ class TestChanges:
         assert simulation.settings is before
 
 
-class TestStability:
-    WILD = {"fixed__speed": 3300.0, "defect": "custom", "circular_spline__beta": [0.14]}
+WILD = {"fixed__speed": 3300.0, "defect": "custom", "circular_spline__beta": [0.14]}
 
+
+class TestStability:
     def test_an_unstable_rig_is_refused(self):
         with pytest.raises(ParameterError, match="unstable at 3300 rpm"):
-            simulate(**self.WILD)
+            simulate(**WILD)
 
     def test_or_warned_of(self):
-        simulation = simulate(**self.WILD, unstable="warn")
+        simulation = simulate(**WILD, unstable="warn")
         assert "3300 rpm" in simulation.warning
         assert simulation.advance() is not None
 
     def test_or_let_run(self):
-        assert simulate(**self.WILD, unstable="ignore").warning == ""
+        assert simulate(**WILD, unstable="ignore").warning == ""
 
     def test_a_stable_one_has_no_warning(self):
         assert simulate(unstable="warn").warning == ""
