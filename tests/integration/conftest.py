@@ -1,7 +1,7 @@
 """A bench with real node processes, and what comes out on /diagnostics."""
 
 import array
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -114,7 +114,7 @@ class Bench:
 
 
 @pytest.fixture
-def bench(peer: Any, start_module: Callable[..., Any]) -> Iterator[Bench]:
+def bench(peer: Any, start_module: Callable[..., Any]) -> Bench:
     """Give a bench on this test process's own ROS domain."""
     return Bench(peer, start_module)
 

@@ -134,11 +134,18 @@ class JointWatch:
         return bool(assessments)
 
     def check(self, now: int, explain: Explain) -> None:
-        """Look for inputs that are silent or useless; to be called once a second."""
+        """Look for inputs that are silent or useless; to be called once a second.
+
+        A time `now` of 0 says that a simulated clock is asked for but has not begun.
+        """
         if self._assessed:
             self._assessed = False
             return
         try:
+            if not now:
+                reason = "use_sim_time is set, but no simulated time has come yet: does anything publish /clock?"
+                self._show(self._other(now, Level.WARN, FaultCode.UNDETERMINED, reason))
+                return
             useless = self._useless(now)
             if not useless:
                 return
@@ -191,8 +198,9 @@ class JointWatch:
             heard.stamp, heard.useful = stamp, now
 
     def _useless(self, now: int) -> list[str]:
-        for heard in self._heard.values():  # a clock set back counts anew
-            heard.arrived, heard.useful = min(heard.arrived, now), min(heard.useful, now)
+        for heard in self._heard.values():
+            if heard.arrived > now or not heard.arrived:  # the clock was set back, or has only just begun
+                heard.arrived = heard.useful = now
         return [name for name, heard in self._heard.items() if now - heard.useful >= self._timeout]
 
     def _complain(self, name: str, now: int, explain: Explain) -> str:

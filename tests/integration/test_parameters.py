@@ -1,0 +1,143 @@
+"""Parameters as ROS shows, checks and changes them."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hd_monitor.settings import PARAMETERS
+
+from .conftest import MONITOR, Bench, Feeder, arguments_of
+
+pytestmark = pytest.mark.ros
+
+IMPOSSIBLE = {
+    "reducer.flexspline_teeth:=161": "the tooth difference 162 - 161 = 1 is odd",
+    "reducer.mount:=ceiling": "choose one of: circular_spline_fixed, flexspline_fixed",
+    "reducer.flexspline_tooth:=200": "reducer.flexspline_tooth",
+    "dynamics.natural_frequency:=fast": "dynamics.natural_frequency = 'fast' has the wrong type",
+    "dynamics.damping_ratio:=7.0": "dynamics.damping_ratio = 7.0 is outside [0.0001, 0.7]",
+    "diagnosis.warn_index:=0.5": "an error must be worse than a warning",
+    "input.source:=ultrasound": "choose one of: block, accel_stamped",
+    "joints:=[a, a]": "must be a list of different names",
+    "joints:=[left-arm, right]": "call it 'left_arm' there",
+    "joints:=[input]": "call it 'input_joint' there",
+    "elbow.input.axis:=x": "elbow.input.axis",
+}
+
+
+@pytest.mark.parametrize("parameter", [name for name in IMPOSSIBLE if not name.startswith("elbow")])
+def test_an_impossible_parameter_is_one_clear_line_and_status_2(start_module: Any, parameter: str) -> None:
+    process = start_module(MONITOR, *arguments_of((parameter,)))
+    assert process.wait() == 2
+    lines = [line for line in process.output.splitlines() if line.strip()]
+    assert len(lines) == 1, process.output
+    assert IMPOSSIBLE[parameter] in lines[0]
+
+
+def test_an_imu_without_a_radius_is_refused_at_the_start(start_module: Any) -> None:
+    process = start_module(MONITOR, *arguments_of(("input.source:=imu", "input.sensor_radius:=0.0")))
+    assert process.wait() == 2
+    assert "give the distance of the IMU from the joint's axis" in process.output
+    assert "Traceback" not in process.output
+
+
+@pytest.mark.parametrize("content", [None, "a: [", "/**:\n  ros__parameters:\n    reducer: {flexspline_teeth: many}\n"])
+def test_an_unusable_file_is_refused(start_module: Any, tmp_path: Path, content: str | None) -> None:
+    file = tmp_path / "monitor.yaml"
+    if content is not None:
+        file.write_text(content)
+    process = start_module(MONITOR, "--ros-args", "--params-file", str(file))
+    assert process.wait() == 2
+    assert "Traceback" not in process.output
+    assert process.output.strip()
+
+
+def test_a_shared_file_may_hold_what_belongs_to_other_nodes(bench: Bench, start_module: Any, tmp_path: Path) -> None:
+    file = tmp_path / "cell.yaml"
+    file.write_text(
+        "/**:\n  ros__parameters:\n    defect: flexspline\n    sensor: {rate: 2000.0}\n"
+        "    dynamics: {natural_frequency: 60}\n    reducer: {serial: A7}\n"
+    )
+    process = start_module(MONITOR, "--ros-args", "--params-file", str(file))
+    status = bench.until_status(lambda s: True, "a status")
+    assert status.hardware_id == "A7"
+    assert "ignoring defect, sensor.rate" in process.output
+
+
+def call_set(peer: Any, name: str, value: Any) -> Any:
+    from rcl_interfaces.srv import SetParameters
+    from rclpy.parameter import Parameter
+
+    request = SetParameters.Request(parameters=[Parameter(name, value=value).to_parameter_msg()])
+    return peer.call(SetParameters, "hd_monitor_node/set_parameters", request).results[0]
+
+
+def test_limits_change_at_run_time(bench: Bench, peer: Any, feeder: Feeder) -> None:
+    bench.monitor("diagnosis.error_index:=0.2")
+    bench.until(feeder.matched, "the monitor's subscriptions")
+    result = call_set(peer, "diagnosis.warn_index", 0.12)
+    assert result.successful, result.reason
+
+    def in_force() -> bool:
+        feeder.send(2)
+        return any(status.values["warn limit (%)"] == "12.000" for status in bench.statuses)
+
+    bench.until(in_force, "the new limit in a status")
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "reason"),
+    [
+        ("diagnosis.warn_index", 0.5, "an error must be worse than a warning"),
+        ("diagnosis.warn_index", 5.0, "range"),
+        ("diagnosis.confirm_count", 50, "can never be reached"),
+        ("reducer.flexspline_teeth", 200, "read-only"),
+        ("diagnosis.latch", "yes", "type"),
+    ],
+)
+def test_what_cannot_be_is_rejected_with_the_reason(
+    bench: Bench, peer: Any, name: str, value: Any, reason: str
+) -> None:
+    bench.monitor()
+    result = call_set(peer, name, value)
+    assert not result.successful
+    assert reason in result.reason.lower()
+    bench.until(lambda: bench.statuses, "a status: the node lives on")
+
+
+def test_every_parameter_is_described_with_unit_and_range(bench: Bench, peer: Any) -> None:
+    from rcl_interfaces.srv import DescribeParameters
+
+    bench.monitor()
+    names = [parameter.name for parameter in PARAMETERS]
+    response = peer.call(
+        DescribeParameters, "hd_monitor_node/describe_parameters", DescribeParameters.Request(names=names)
+    )
+    for parameter, descriptor in zip(PARAMETERS, response.descriptors, strict=True):
+        assert parameter.description in descriptor.description
+        assert parameter.unit in descriptor.description
+        assert descriptor.read_only == (not parameter.name.startswith("diagnosis."))
+        if isinstance(parameter.default, float):
+            bounds = descriptor.floating_point_range[0]
+            assert (bounds.from_value, bounds.to_value) == (parameter.low, parameter.high)
+        elif isinstance(parameter.default, int) and not isinstance(parameter.default, bool):
+            bounds = descriptor.integer_range[0]
+            assert (bounds.from_value, bounds.to_value) == (parameter.low, parameter.high)
+        for word in parameter.choices:
+            assert word in descriptor.additional_constraints
+
+
+def test_with_several_joints_each_has_its_own(bench: Bench, peer: Any) -> None:
+    from rcl_interfaces.srv import GetParameters
+
+    bench.monitor("joints:=[a, b]", "load.torque:=7.0", "b.load.torque:=3.0")
+    names = ["load.torque", "a.load.torque", "b.load.torque"]
+    response = peer.call(GetParameters, "hd_monitor_node/get_parameters", GetParameters.Request(names=names))
+    assert [value.double_value for value in response.values] == [7.0, 7.0, 3.0]
+    assert call_set(peer, "b.diagnosis.warn_index", 0.03).successful
+    assert "read-only" in call_set(peer, "diagnosis.warn_index", 0.03).reason
+
+
+def test_a_whole_number_will_do_for_a_real_one(bench: Bench) -> None:
+    bench.monitor("dynamics.natural_frequency:=60", "input.timeout:=1")
+    bench.until(lambda: bench.statuses, "a status")
