@@ -36,6 +36,8 @@ class Parameter:
         """
         if isinstance(self.default, tuple):
             return self._check_list(value)
+        if value is True and "y" in self.choices:
+            value = "y"  # YAML as ROS reads it takes a bare y for true
         kind = type(self.default)
         if kind is float and isinstance(value, int) and not isinstance(value, bool):
             value = float(value)
