@@ -78,7 +78,12 @@ def unpack_block(dimensions: Sequence[tuple[str, int, int]], data_offset: int, d
     LayoutError
         If the layout is not the contract's, saying what differs.
     """
-    values = np.asarray(data, dtype=np.float64)
+    try:
+        values = np.asarray(data, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise LayoutError("a block's data are not numbers; the contract asks for a list of float64") from None
+    if values.ndim != 1:
+        raise LayoutError(f"a block's data have the shape {values.shape}; the contract asks for a plain list")
     if len(dimensions) != 1:
         raise LayoutError(f"a block has {len(dimensions)} dimensions; the contract asks for exactly 1")
     label, size, stride = dimensions[0]

@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass
 from enum import StrEnum
+from numbers import Real
 from typing import NamedTuple
 
 from .errors import GeometryError, ParameterError
@@ -66,8 +67,8 @@ class Reducer:
     def __post_init__(self) -> None:
         """Refuse what cannot turn."""
         for name in ("flexspline_teeth", "circular_spline_teeth"):
-            value = getattr(self, name)
-            if isinstance(value, bool) or int(value) != value:
+            value: object = getattr(self, name)
+            if isinstance(value, bool) or not isinstance(value, Real) or not float(value).is_integer():
                 raise GeometryError(f"{name} = {value!r} is not a whole number; a gear has whole teeth: count them")
             object.__setattr__(self, name, int(value))
         z1, z2 = self.flexspline_teeth, self.circular_spline_teeth

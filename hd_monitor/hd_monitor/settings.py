@@ -1,6 +1,6 @@
 """Settings of one joint's monitor: one table of parameters, read by the node, by replay and by the tests alike."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Self
 
@@ -334,6 +334,10 @@ def set_aside_foreign(given: Mapping[str, Any]) -> tuple[dict[str, Any], list[st
     return {name: value for name, value in flat.items() if name not in strangers}, strangers
 
 
+def _is_name(joint: object) -> bool:
+    return isinstance(joint, str) and bool(joint)
+
+
 def split_joints(given: Mapping[str, Any]) -> dict[str, JointSettings]:
     """Settings of every joint in a node's parameters.
 
@@ -355,7 +359,8 @@ def split_joints(given: Mapping[str, Any]) -> dict[str, JointSettings]:
     """
     flat = {name: value for name, value in flatten(given).items() if not _is_of_the_node(name)}
     joints = flat.pop("joints", None) or ["joint"]
-    if isinstance(joints, str) or len(set(joints)) != len(joints):
+    names = isinstance(joints, Sequence) and not isinstance(joints, str) and all(_is_name(joint) for joint in joints)
+    if not names or len(set(joints)) != len(joints):
         raise ParameterError(f"joints = {joints!r} must be a list of different names")
     common = {name: value for name, value in flat.items() if name in _BY_NAME}
     rest = {name: value for name, value in flat.items() if name not in _BY_NAME}

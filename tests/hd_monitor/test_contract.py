@@ -1,0 +1,126 @@
+"""The block's layout: what is packed is unpacked, and whatever differs from the contract is said."""
+
+import math
+
+import numpy as np
+import pytest
+from hd_monitor.contract import (
+    BLOCK_LABEL,
+    MAX_ZOOM_BINS,
+    Block,
+    Dimension,
+    pack_block,
+    rms_layout,
+    unpack_block,
+    zoom_layout,
+)
+from hd_monitor.errors import LayoutError
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+STAMP = 1_700_000_000_123_456_789
+
+
+def packed(count=3):
+    dimension, data = pack_block(Block(STAMP, 1e-3, 7, np.arange(float(count))))
+    return [dimension], 4, data
+
+
+@given(
+    st.integers(0, 2**33 * 10**9 - 1),
+    st.floats(1e-6, 9.9),
+    st.integers(0, 2**53),
+    arrays(np.float64, st.integers(0, 40), elements=st.floats(allow_nan=True)),
+)
+def test_a_round_trip_is_exact(stamp, period, sequence, samples):
+    dimension, data = pack_block(Block(stamp, period, sequence, samples))
+    block = unpack_block([dimension], 4, data)
+    assert block[:3] == (stamp, period, sequence)
+    np.testing.assert_array_equal(block.samples, samples)
+
+
+def test_the_layout_is_the_contracts():
+    dimensions, _, data = packed()
+    assert dimensions == [Dimension("torsional_acceleration", 3, 3)]
+    assert data.tolist() == [1_700_000_000.0, 123_456_789.0, 1e-3, 7.0, 0.0, 1.0, 2.0]
+
+
+def test_lists_and_plain_tuples_are_read():
+    block = unpack_block([("torsional_acceleration", 1, 1)], 4, [5, 0, 0.5, 0, 9])
+    assert block.stamp == 5_000_000_000
+    assert block.samples.tolist() == [9.0]
+
+
+@pytest.mark.parametrize(
+    ("dimensions", "match"),
+    [
+        ([], "0 dimensions"),
+        ([(BLOCK_LABEL, 3, 3), ("x", 1, 1)], "2 dimensions"),
+        ([("acceleration", 3, 3)], "labelled 'acceleration'"),
+        ([(BLOCK_LABEL, 4, 4)], "announces 4 samples"),
+        ([(BLOCK_LABEL, 3, 1)], "stride 1"),
+    ],
+)
+def test_wrong_dimensions_are_refused(dimensions, match):
+    with pytest.raises(LayoutError, match=match):
+        unpack_block(dimensions, 4, packed()[2])
+
+
+def test_a_wrong_offset_is_refused():
+    with pytest.raises(LayoutError, match="data_offset is 0"):
+        unpack_block(packed()[0], 0, packed()[2])
+
+
+@pytest.mark.parametrize("data", [[], [1.0, 2.0, 3.0], [1.0, 0.0, 1e-3]])
+def test_a_block_cut_short_is_refused(data):
+    with pytest.raises(LayoutError, match="announces 0 samples"):
+        unpack_block([(BLOCK_LABEL, 0, 0)], 4, data)
+
+
+@pytest.mark.parametrize(
+    ("place", "value", "match"),
+    [
+        (0, 1.5, "whole"),
+        (0, -1.0, "whole"),
+        (0, math.nan, "whole"),
+        (0, 2.0**33, "whole"),
+        (1, 1e9, "whole"),
+        (1, math.inf, "whole"),
+        (3, -1.0, "whole"),
+        (3, 0.5, "whole"),
+        (2, 0.0, "period"),
+        (2, -1e-3, "period"),
+        (2, math.nan, "period"),
+        (2, 10.0, "period"),
+    ],
+)
+def test_a_header_that_means_nothing_is_refused(place, value, match):
+    dimensions, offset, data = packed()
+    data[place] = value
+    with pytest.raises(LayoutError, match=match):
+        unpack_block(dimensions, offset, data)
+
+
+@pytest.mark.parametrize("data", [["a"] * 7, [[1.0] * 7], [None] * 7, "text"])
+def test_data_that_is_no_list_of_numbers_is_refused(data):
+    with pytest.raises(LayoutError):
+        unpack_block(packed()[0], 4, data)
+
+
+def test_an_empty_block_is_a_block():
+    dimension, data = pack_block(Block(STAMP, 1e-3, 0, np.empty(0)))
+    assert unpack_block([dimension], 4, data).samples.size == 0
+
+
+@pytest.mark.parametrize("field", ["stamp", "sequence"])
+def test_packing_refuses_what_could_not_be_read_again(field):
+    block = Block(**(Block(STAMP, 1e-3, 7, np.zeros(3))._asdict() | {field: -1}))
+    dimension, data = pack_block(block)
+    with pytest.raises(LayoutError):
+        unpack_block([dimension], 4, data)
+
+
+def test_the_other_layouts_describe_their_tables():
+    assert zoom_layout(MAX_ZOOM_BINS) == (Dimension("bin", 50, 100), Dimension("frequency_amplitude", 2, 2))
+    assert rms_layout(7) == (Dimension("speed_bin", 7, 21), Dimension("rpm_rms_samples", 3, 3))
