@@ -70,7 +70,7 @@ class Reducer:
             value: object = getattr(self, name)
             if isinstance(value, bool) or not isinstance(value, Real) or not float(value).is_integer():
                 raise GeometryError(f"{name} = {value!r} is not a whole number; a gear has whole teeth: count them")
-            object.__setattr__(self, name, int(value))
+            object.__setattr__(self, name, round(float(value)))
         z1, z2 = self.flexspline_teeth, self.circular_spline_teeth
         if z1 < 1:
             raise GeometryError(f"flexspline_teeth = {z1} is no gear; give the number of teeth of the flexspline")
