@@ -47,4 +47,4 @@ def summarise(result: JointResult) -> str:
 
 
 def _percent(value: float, std: float) -> str:
-    return f"{100 * value:.2f} ± {100 * std:.2f} %"
+    return f"{100 * value:.2f} ± {100 * std:.2g} %"

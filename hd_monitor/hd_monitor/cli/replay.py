@@ -1,0 +1,126 @@
+"""``hd-monitor replay``: a recorded bag through the same core as the node."""
+
+import argparse
+import json
+import sys
+from pathlib import Path
+
+from ..diagnosis.verdict import Level
+from ..errors import ParameterError
+from ..offline.bag import Bag
+from ..offline.parameters import load_parameters, parse_override
+from ..offline.plan import Request, plan
+from ..offline.progress import ProgressLine
+from ..offline.replay import replay
+from ..offline.result import JointResult, as_dict
+from ..offline.summary import summarise
+
+DONE, FAILED, UNUSABLE = 0, 1, 2
+_FAIL_ON = {"warn": Level.WARN, "error": Level.ERROR}
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the command's arguments."""
+    parser.add_argument("bag", type=Path, metavar="BAG", help="rosbag2 folder or file, MCAP or SQLite")
+    add_input_arguments(parser)
+    parser.add_argument("--json", metavar="OUT", help="write the result as JSON to this file; - for standard output")
+    parser.add_argument("--report", type=Path, metavar="DIR", help="write an HTML page with plots into this folder")
+    parser.add_argument(
+        "--fail-on", choices=sorted(_FAIL_ON), help="exit with status 1 if a joint's last verdict is this bad or worse"
+    )
+
+
+def add_input_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments that say how a bag is to be read."""
+    parser.add_argument("--params", type=Path, metavar="FILE", help="ROS parameter file, the same as the node's")
+    parser.add_argument("--node", metavar="NAME", help="full name of the node in FILE whose parameters are meant")
+    parser.add_argument(
+        "-p", "--param", action="append", default=[], metavar="NAME:=VALUE", help="set one parameter (repeatable)"
+    )
+    parser.add_argument(
+        "--joint", action="append", default=[], metavar="NAME", help="joint to look at (repeatable); default: all"
+    )
+    parser.add_argument(
+        "--remap", action="append", default=[], metavar="FROM:=TO", help="topic of the contract := recorded topic"
+    )
+    parser.add_argument("--namespace", metavar="NS", help="namespace of the node, where several were recorded")
+
+
+def request_from(arguments: argparse.Namespace) -> Request:
+    """Gather what the arguments ask for.
+
+    Raises
+    ------
+    ParameterError
+        If a file or an argument cannot be read.
+    """
+    parameters = load_parameters(arguments.params, arguments.node) if arguments.params else {}
+    parameters.update(parse_override(text) for text in arguments.param)
+    remap = {}
+    for text in arguments.remap:
+        name, mark, target = text.partition(":=")
+        if not (name and mark and target):
+            raise ParameterError(
+                f"--remap {text!r} maps nothing; write FROM:=TO, as in joint_states:=/arm/joint_states"
+            )
+        remap[name] = target
+    return Request(parameters=parameters, joints=arguments.joint, namespace=arguments.namespace, remap=remap)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Replay the bag; return the exit status."""
+    request = request_from(arguments)
+    with Bag(arguments.bag) as bag:
+        plans = plan(bag, request)
+        results = {item.joint: JointResult(item) for item in plans}
+        progress = ProgressLine(bag)
+        collectors = {}
+        if arguments.report:
+            from ..offline.report.collector import Collector
+
+            collectors = {item.joint: Collector(item.settings) for item in plans}
+        for said in replay(bag, plans, progress):
+            results[said.plan.joint].add(said)
+            if collectors and not said.last:
+                collectors[said.plan.joint].add(said.assessment)
+        progress.close()
+        notes = bag.notes
+    for note in notes:
+        print(f"hd-monitor replay: {note}", file=sys.stderr)
+    joints = list(results.values())
+    complaints = [joint.unusable for joint in joints if joint.unusable]
+    for complaint in complaints:
+        print(f"hd-monitor replay: {complaint}", file=sys.stderr)
+    if len(complaints) == len(joints):
+        return UNUSABLE
+    text = sys.stderr if arguments.json == "-" else sys.stdout
+    for joint in joints:
+        print(summarise(joint), file=text)
+    content = as_dict(str(arguments.bag), notes, joints)
+    if arguments.json:
+        write_json(content, arguments.json)
+    if arguments.report:
+        from ..offline.report.page import write_report
+
+        page = write_report(arguments.report, content, joints, collectors)
+        print(f"report: {page}", file=text)
+    worst = max(joint.last.verdict.level for joint in joints if joint.last is not None)
+    return FAILED if arguments.fail_on and worst >= _FAIL_ON[arguments.fail_on] else DONE
+
+
+def write_json(content: object, target: str) -> None:
+    """Write JSON to a file, or to standard output if that is called ``-``.
+
+    Raises
+    ------
+    ParameterError
+        If the file cannot be written.
+    """
+    text = json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False)
+    if target == "-":
+        print(text)
+        return
+    try:
+        Path(target).write_text(text + "\n", encoding="utf-8")
+    except OSError as error:
+        raise ParameterError(f"{target} cannot be written: {error.strerror}; choose another file") from None

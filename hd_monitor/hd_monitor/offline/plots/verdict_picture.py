@@ -1,0 +1,66 @@
+"""The picture of a verdict: the zoom spectrum with both lines marked and labelled, the verdict as its title."""
+
+import textwrap
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from ...analysis.zoom import ZoomSpectrum
+from .style import CIRCULAR_SPLINE, FLEXSPLINE, INK, SOFT, Look, new_figure, room_above
+
+_TITLE_WIDTH = 78
+
+
+def verdict_picture(zoom: ZoomSpectrum, *, title: str, subtitle: str = "", unit: str = "rad/s²") -> Figure:
+    """Draw a zoom spectrum under its verdict.
+
+    Parameters
+    ----------
+    zoom : ZoomSpectrum
+    title : str
+        The verdict in words.
+    subtitle : str
+        Where it comes from: the joint and the speed, say.
+    unit : str
+        Unit of the amplitudes.
+    """
+    with new_figure() as figure:
+        axes = figure.add_subplot()
+        axes.fill_between(zoom.frequencies, zoom.amplitude, color=INK, alpha=0.08, linewidth=0)
+        axes.plot(zoom.frequencies, zoom.amplitude, color=INK, linewidth=1.5)
+        axes.set_xlim(zoom.frequencies[0], zoom.frequencies[-1])
+        axes.set_ylim(bottom=0.0)
+        room_above(axes, 0.22)
+        pairs = zip((CIRCULAR_SPLINE, FLEXSPLINE), zoom.lines, zoom.line_amplitudes, ("right", "left"), strict=True)
+        for look, frequency, amplitude, side in pairs:
+            _mark(axes, look, frequency, amplitude, side, unit)
+        axes.set_xlabel("frequency [Hz]")
+        axes.set_ylabel(f"amplitude [{unit}]")
+        axes.set_title("\n".join(textwrap.wrap(title, _TITLE_WIDTH)))
+        note = f"line pair k = {zoom.k}" + ("" if zoom.resolved else "; too short a record to part the two lines")
+        text = f"{subtitle}   {note}" if subtitle else note
+        axes.annotate(
+            text, (0.0, 1.0), xycoords="axes fraction", xytext=(0, 3), textcoords="offset points", fontsize=9,
+            color=SOFT, va="bottom",
+        )  # fmt: skip
+        axes.title.set_position((0.0, 1.0))
+        axes.set_title(axes.get_title(loc="left"), loc="left", pad=20.0)
+        return figure
+
+
+def _mark(axes: Axes, look: Look, frequency: float, amplitude: float, side: str, unit: str) -> None:
+    top = axes.get_ylim()[1]
+    axes.vlines(frequency, 0.0, amplitude, color=look.colour, linewidth=2.2, linestyle=look.line)
+    axes.plot(frequency, amplitude, look.marker, color=look.colour, markersize=8, zorder=5)
+    left, right = axes.get_xlim()
+    beside = 0.012 * (right - left) * (-1.0 if side == "right" else 1.0)
+    axes.annotate(
+        f"{look.label}\n{frequency:.2f} Hz\n{_short(amplitude)} {unit}",
+        (frequency, amplitude), xytext=(frequency + beside, min(amplitude + 0.02 * top, 0.84 * top)),
+        ha=side, va="bottom", fontsize=10, color=look.colour, fontweight="bold", linespacing=1.25,
+    )  # fmt: skip
+
+
+def _short(value: float) -> str:
+    return np.format_float_positional(value, precision=3, fractional=False, trim="-")

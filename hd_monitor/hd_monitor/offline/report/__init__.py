@@ -1,0 +1,1 @@
+"""The report of a replay: analyses that only it needs, the page and its pictures."""

@@ -1,0 +1,110 @@
+"""What a report needs beyond the assessments, collected while a recording is replayed, in bounded memory."""
+
+from collections import deque
+
+import numpy as np
+import numpy.typing as npt
+
+from ...acquisition.record import JointSamples
+from ...analysis.zoom import ZoomSpectrum
+from ...assessment import Assessment
+from ...contract import NANOSECONDS
+from ...settings import JointSettings
+from .lines_by_speed import LinesBySpeed
+from .spectra import OrderMapAccumulator, filled
+from .waterfall import WaterfallAccumulator
+
+FloatArray = npt.NDArray[np.float64]
+
+_TAIL = 120_000  # samples kept of the recording's end
+_AS_GOOD = 0.8
+_SLOW_DEGREE = 3
+
+
+class Collector:
+    """Collects from the assessments of one joint.
+
+    Parameters
+    ----------
+    settings : JointSettings
+
+    Attributes
+    ----------
+    best : Assessment or None
+        The newest assessment whose zoom spectrum shows the lines about as high as any other.
+    zoom : ZoomSpectrum or None
+        Its zoom spectrum.
+    order_map : OrderMapAccumulator
+    lines : LinesBySpeed
+    waterfall : WaterfallAccumulator
+    first, last : int
+        Stamps of the first and the last assessment [ns]; 0 if there is none.
+    motion_seconds : float
+        Time in which joint states came [s].
+    """
+
+    def __init__(self, settings: JointSettings) -> None:
+        reducer, width = settings.reducer, settings["analysis.rms_bin_width"]
+        harmonics, minimum = settings["analysis.harmonics"], settings["analysis.minimum_speed"]
+        self._source: str = settings["input.source"]
+        self.settings = settings
+        self.order_map = OrderMapAccumulator(
+            reducer, width, minimum, harmonics * max(reducer.circular_spline_order, reducer.flexspline_order) + 1.0
+        )
+        self.lines = LinesBySpeed(reducer, width, minimum, harmonics)
+        self.waterfall = WaterfallAccumulator()
+        self.best: Assessment | None = None
+        self.zoom: ZoomSpectrum | None = None
+        self.first = self.last = 0
+        self.motion_seconds = 0.0
+        self._tail: deque[tuple[FloatArray, FloatArray]] = deque()
+        self._kept = 0
+
+    def add(self, assessment: Assessment) -> None:
+        """Take the next assessment."""
+        self.first = self.first or assessment.stamp
+        self.last = assessment.stamp
+        for record in assessment.records:
+            self.order_map.add(record)
+            self.lines.add(record)
+            self.waterfall.add(record)
+            self._keep(record.angle, filled(record.acceleration))
+        joint = assessment.joint_samples
+        if joint is not None and len(joint) > 1:
+            self.motion_seconds += float(joint.times[-1] - joint.times[0]) * len(joint) / (len(joint) - 1)
+            if self.settings.sensorless:
+                self._keep_joint(joint)
+        zoom = assessment.zoom
+        if zoom is not None and (self.zoom is None or _height(zoom) >= _AS_GOOD * _height(self.zoom)):
+            self.best, self.zoom = assessment, zoom
+
+    def tail(self) -> tuple[FloatArray, FloatArray]:
+        """Output angle [rad] and vibration signal of the recording's last minutes."""
+        if not self._tail:
+            return np.empty(0), np.empty(0)
+        angles, values = zip(*self._tail, strict=True)
+        return np.concatenate(angles), np.concatenate(values)
+
+    @property
+    def seconds(self) -> float:
+        """Stamps covered [s]."""
+        return (self.last - self.first) / NANOSECONDS
+
+    def _keep_joint(self, joint: JointSamples) -> None:
+        """Keep a sensorless signal without its slow part: friction and gravity."""
+        values = joint.effort if self._source == "joint_effort" else joint.speed
+        known = np.isfinite(values)
+        if int(known.sum()) > 2 * _SLOW_DEGREE and float(np.ptp(joint.times)) > 0.0:
+            slow = np.polynomial.Legendre.fit(joint.times[known], values[known], _SLOW_DEGREE)
+            self._keep(joint.angle[known], values[known] - slow(joint.times[known]))
+
+    def _keep(self, angle: FloatArray, values: FloatArray) -> None:
+        self._tail.append((angle, values))
+        self._kept += values.size
+        while self._kept > _TAIL and len(self._tail) > 1:
+            self._kept -= self._tail.popleft()[1].size
+
+
+def _height(zoom: ZoomSpectrum) -> float:
+    """Height of the lines, of less worth where they are not parted."""
+    return max(zoom.line_amplitudes) * (1.0 if zoom.resolved else 0.1)

@@ -1,0 +1,165 @@
+"""Spectra that only a report needs: over frequency, over order, and over order and speed."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from scipy.signal import get_window
+
+from ...acquisition.record import Record
+from ...reducer import Reducer
+
+FloatArray = npt.NDArray[np.float64]
+
+_SHORTEST_PIECE = 0.25  # s
+_SMALL_HOLE = 3  # samples
+_STANDING_PARTS = 1e-9
+
+
+class Spectrum(NamedTuple):
+    """Peak amplitude over an axis; a sine of amplitude A shows A."""
+
+    axis: FloatArray
+    """Frequencies [Hz] or orders, shape (bins,)."""
+    amplitude: FloatArray
+    """In the signal's unit, shape (bins,)."""
+
+
+class OrderMap(NamedTuple):
+    """Amplitude over wave-generator speed and order; NaN where nothing was measured."""
+
+    speeds: FloatArray
+    """Wave-generator speeds [rpm], rising, shape (speeds,)."""
+    orders: FloatArray
+    """Cycles per wave-generator revolution, shape (orders,)."""
+    amplitude: FloatArray
+    """Root mean square over the recording of the peak amplitudes [rad/s²], shape (speeds, orders)."""
+
+
+def filled(values: FloatArray) -> FloatArray:
+    """Bridge missing samples linearly and take off the mean."""
+    known = np.isfinite(values)
+    if not known.any():
+        return np.zeros_like(values)
+    if not known.all():
+        place = np.arange(values.size)
+        values = np.interp(place, place[known], values[known])
+    return values - values.mean()
+
+
+def whole_runs(values: FloatArray) -> list[tuple[int, int]]:
+    """Bounds of the stretches without a hole of more than a few samples; a lone spike left out is none."""
+    missing = np.concatenate([[False], ~np.isfinite(values), [False]]).astype(np.int8)
+    edges = np.flatnonzero(np.diff(missing))
+    holes = [(a, b) for a, b in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True) if b - a > _SMALL_HOLE]
+    bounds = [0, *(edge for hole in holes for edge in hole), values.size]
+    return [(a, b) for a, b in zip(bounds[::2], bounds[1::2], strict=True) if b > a]
+
+
+def amplitude_spectrum(record: Record) -> Spectrum:
+    """Amplitude spectrum of θ'' [rad/s²] over frequency [Hz], Hann window."""
+    values = filled(record.acceleration)
+    window = get_window("hann", values.size)
+    amplitude = 2.0 * np.abs(np.fft.rfft(window * values)) / window.sum()
+    return Spectrum(np.fft.rfftfreq(values.size, record.period), amplitude)
+
+
+def order_spectrum(angle: FloatArray, values: FloatArray, orders: FloatArray) -> Spectrum:
+    """Amplitude over order of samples at any angles, strokes back and forth included.
+
+    Parameters
+    ----------
+    angle : ndarray, shape (samples,)
+        Absolute output angle [rad].
+    values : ndarray, shape (samples,)
+        The signal, trends removed; missing samples are NaN.
+    orders : ndarray, shape (orders,)
+        Cycles per output revolution.
+
+    Notes
+    -----
+    Every sample counts by the way travelled since the one before, and by a Hann window over the travel covered, so
+    that the resolution is two cycles per travel however often the same arc was passed.
+    """
+    if angle.size < 2:
+        return Spectrum(orders, np.zeros_like(orders))
+    way = np.abs(np.gradient(angle))
+    good = np.isfinite(values) & (way > _STANDING_PARTS * math.tau)
+    angle, values, way = angle[good], values[good], way[good]
+    if angle.size < 2:
+        return Spectrum(orders, np.zeros_like(orders))
+    way = np.minimum(way, 4.0 * float(np.median(way)))  # a hole in the data is no way travelled by one sample
+    first, span = float(angle.min()), float(np.ptp(angle)) or 1.0
+    weight = way * (0.5 - 0.5 * np.cos(math.tau * (angle - first) / span))
+    signal = weight * values
+    amplitude = np.array([abs(np.dot(signal, np.exp(-1j * order * angle))) for order in orders.tolist()])
+    return Spectrum(orders, np.asarray(2.0 * amplitude / max(float(weight.sum()), 1e-300)))
+
+
+class OrderMapAccumulator:
+    """Collects an order map from successive records; its size does not grow with them.
+
+    Parameters
+    ----------
+    reducer : Reducer
+    width : float
+        Width of the speed bins [rpm].
+    minimum_speed : float
+        Wave-generator speed [rpm] below which the joint counts as standing.
+    highest : float
+        Highest order shown.
+    """
+
+    _STEP = 0.05
+
+    def __init__(self, reducer: Reducer, width: float, minimum_speed: float, highest: float) -> None:
+        self._reduction = reducer.reduction
+        self._width = width
+        self._minimum = minimum_speed
+        self._orders = np.arange(0.0, highest + self._STEP / 2, self._STEP)
+        self._squares: dict[int, tuple[FloatArray, FloatArray]] = {}
+
+    def add(self, record: Record) -> None:
+        """Take the pieces of a record in which the joint turns one way."""
+        rpm = record.speed * self._reduction * 60.0 / math.tau
+        turning = np.where(np.abs(rpm) > self._minimum, np.sign(rpm), 0.0)
+        edges = np.flatnonzero(np.diff(turning)) + 1
+        values = filled(record.acceleration)
+        if len(whole_runs(record.acceleration)) != 1:
+            return  # a bridged hole would show as vibration at all orders; the speed comes again
+        for first, last in zip([0, *edges.tolist()], [*edges.tolist(), len(record)], strict=True):
+            if turning[first] and (last - first) * record.period >= _SHORTEST_PIECE:
+                self._piece(record.angle[first:last] * turning[first], values[first:last], rpm[first:last])
+
+    def _piece(self, angle: FloatArray, values: FloatArray, rpm: FloatArray) -> None:
+        if not bool((np.diff(angle) > 0).all()):
+            return
+        revolutions = float(angle[-1] - angle[0]) * self._reduction / math.tau
+        even = np.interp(np.linspace(angle[0], angle[-1], angle.size), angle, values)
+        window = get_window("hann", even.size)
+        amplitude = 2.0 * np.abs(np.fft.rfft(window * (even - even.mean()))) / window.sum()
+        orders = np.arange(amplitude.size) / revolutions
+        if orders[1] >= self._STEP:
+            shown = np.interp(self._orders, orders, amplitude, right=np.nan)
+        else:
+            shown = np.zeros(self._orders.size)
+            place = np.rint(orders / self._STEP).astype(np.int64)
+            inside = place < shown.size
+            np.maximum.at(shown, place[inside], amplitude[inside])
+            shown[self._orders > orders[-1]] = np.nan
+        number = round(float(np.abs(rpm).mean()) / self._width)
+        total, count = self._squares.get(number, (np.zeros(shown.size), np.zeros(shown.size)))
+        known = np.isfinite(shown)
+        self._squares[number] = (total + np.where(known, shown**2, 0.0), count + known)
+
+    def result(self) -> OrderMap | None:
+        """Return the map; None if the joint never turned."""
+        if not self._squares:
+            return None
+        numbers = sorted(self._squares)
+        rows = []
+        for number in numbers:
+            total, count = self._squares[number]
+            rows.append(np.sqrt(np.divide(total, count, out=np.full(total.size, np.nan), where=count > 0)))
+        return OrderMap(np.array(numbers) * self._width, self._orders, np.array(rows))

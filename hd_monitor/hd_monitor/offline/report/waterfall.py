@@ -1,0 +1,76 @@
+"""Spectra over time, in bounded memory."""
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from scipy.signal import get_window
+
+from ...acquisition.record import Record
+from .spectra import filled, whole_runs
+
+FloatArray = npt.NDArray[np.float64]
+
+_BINS = 250
+_MOST_ROWS = 400
+_SHORTEST = 64  # samples
+
+
+class Waterfall(NamedTuple):
+    """Spectra over time."""
+
+    times: FloatArray
+    """Middle of each spectrum's stretch [s], relative to the monitor's epoch, rising, shape (rows,)."""
+    frequencies: FloatArray
+    """[Hz], shape (bins,)."""
+    amplitude: FloatArray
+    """Largest peak amplitude of each bin [rad/s²], shape (rows, bins)."""
+
+
+class WaterfallAccumulator:
+    """Collects a spectrum a record; where there are too many, neighbours are merged by their larger values."""
+
+    def __init__(self) -> None:
+        self._rows: list[tuple[float, float, FloatArray]] = []  # first time, last time, amplitudes
+        self._nyquist = 0.0
+        self._together = 1
+        self._waiting = 0
+
+    def add(self, record: Record) -> None:
+        """Take a record."""
+        nyquist = 0.5 / record.period
+        if len(record) < _SHORTEST or (self._nyquist and abs(nyquist / self._nyquist - 1.0) > 0.02):
+            return
+        if len(whole_runs(record.acceleration)) != 1:
+            return  # a bridged hole would show as vibration at all frequencies
+        self._nyquist = self._nyquist or nyquist
+        values = filled(record.acceleration)
+        window = get_window("hann", values.size)
+        fine = 2.0 * np.abs(np.fft.rfft(window * values)) / window.sum()
+        place = np.minimum((np.arange(fine.size) * _BINS) // fine.size, _BINS - 1)
+        row = np.zeros(_BINS)
+        np.maximum.at(row, place, fine)
+        first, last = record.start, record.start + record.period * len(record)
+        if self._waiting and self._rows:
+            begun, _, old = self._rows[-1]
+            self._rows[-1] = (begun, last, np.maximum(old, row))
+        else:
+            self._rows.append((first, last, row))
+        self._waiting = (self._waiting + 1) % self._together
+        if len(self._rows) > _MOST_ROWS:
+            self._merge()
+
+    def _merge(self) -> None:
+        pairs = zip(self._rows[::2], self._rows[1::2], strict=False)
+        self._rows = [(a[0], b[1], np.maximum(a[2], b[2])) for a, b in pairs]
+        self._together *= 2
+        self._waiting = 0
+
+    def result(self) -> Waterfall | None:
+        """Return the waterfall; None with fewer than two spectra."""
+        if len(self._rows) < 2:
+            return None
+        rows = sorted(self._rows, key=lambda row: row[0])
+        times = np.array([0.5 * (first + last) for first, last, _ in rows])
+        frequencies = (np.arange(_BINS) + 0.5) * self._nyquist / _BINS
+        return Waterfall(times, frequencies, np.array([amplitude for *_, amplitude in rows]))
