@@ -23,7 +23,7 @@ setup(
         (f"share/{NAME}/launch", sorted(str(path) for path in Path("launch").glob("*.launch.py"))),
     ],
     install_requires=["hd_monitor", "numpy>=1.26", "scipy>=1.11"],
-    extras_require={"test": ["pytest"]},
+    extras_require={"offline": ["rosbags>=0.10.11", "pyyaml>=6.0"], "test": ["pytest"]},
     entry_points={
         "console_scripts": [
             "hd_sim_node = hd_sim_node.node:main",
