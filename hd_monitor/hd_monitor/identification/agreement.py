@@ -27,8 +27,8 @@ class DirectionEvidence:
         Probability of noise alone making lines this large.
     dominance : LinePair
         Confidence that each spline's line is the larger one, by more than ``diagnosis.both_ratio`` allows.
-    rival : float
-        Order beside the pair with a significant line larger than both [cycles per output revolution]; NaN if none.
+    rival : float or None
+        Order beside the pair with a significant line larger than both [cycles per output revolution], if there is one.
     strokes, samples : int
         Strokes and rows used.
     """
@@ -38,7 +38,7 @@ class DirectionEvidence:
     std: LinePair
     chance: LinePair
     dominance: LinePair
-    rival: float
+    rival: float | None
     strokes: int
     samples: int
 
@@ -96,7 +96,7 @@ def reasons_against_naming(
     if len(directions) < 2:
         return ("One stroke only so far: what it shows must come back in others, the other direction best of all",)
     reasons = []
-    rivals = [direction.rival for direction in directions if np.isfinite(direction.rival)]
+    rivals = [direction.rival for direction in directions if direction.rival is not None]
     if len(rivals) == len(directions):
         reasons.append(
             f"The signal has a stronger line at about {rivals[0]:.0f} than at {pair}: "

@@ -43,8 +43,8 @@ class PairEstimate:
     rows : int
     explained : float
         Power that the pair explains, in units of the noise floor: 4 by chance.
-    rival : float
-        Order beside the pair at which there is a significant line larger than both; NaN if there is none.
+    rival : float or None
+        Order beside the pair at which there is a significant line larger than both; None if there is none.
     """
 
     phasors: npt.NDArray[np.complex128]
@@ -54,7 +54,7 @@ class PairEstimate:
     noise: float
     rows: int
     explained: float
-    rival: float
+    rival: float | None
 
     @property
     def amplitude(self) -> LinePair:
@@ -181,15 +181,15 @@ def line_chances(fit: LineSolution | PairEstimate) -> tuple[float, ...]:
     return tuple(chances)
 
 
-def _rival(fit: LineSolution, orders: FloatArray) -> float:
-    """Order of a line among the placebo orders that is larger than the pair's and no accident; NaN if there is none."""
+def _rival(fit: LineSolution, orders: FloatArray) -> float | None:
+    """Order of a line among the placebo orders that is larger than the pair's and no accident; None without one."""
     power = (fit.found**2).reshape(2, -1).sum(axis=0)
     size = np.diag(fit.left).reshape(2, -1).sum(axis=0)
     best = int(np.argmax(np.where(size > 0.0, power / np.where(size > 0.0, size, 1.0), 0.0)))
     rest = np.arange(orders.size) != best
     if not power[rest].any():
-        return float("nan")
+        return None
     ratio = float(power[best] / size[best] / (power[rest].sum() / size[rest].sum()))
     by_chance = orders.size * float(f_distribution.sf(ratio, 2, 2 * (orders.size - 1)))
     larger = 2.0 * float(np.sqrt(power[best])) / float(size[best]) > float(np.abs(fit.phasors).max())
-    return float(orders[best]) if by_chance < CHANCE and larger else float("nan")
+    return float(orders[best]) if by_chance < CHANCE and larger else None

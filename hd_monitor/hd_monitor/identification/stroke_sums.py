@@ -132,16 +132,21 @@ def project(trend: FloatArray, columns: FloatArray) -> FloatArray:
 
 
 def clipped_fit(columns: FloatArray, signal: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Fit and residual of the columns, the residual clipped by Huber's rule so that spikes lose their pull."""
+    """Fit and residual of the columns, the residual clipped by Huber's rule so that spikes lose their pull.
+
+    The residual is divided by the share of rows that are not clipped: with it, the formulas of plain least squares
+    hold for the sum of the two.
+    """
     basis, _ = np.linalg.qr(columns)
     fit = basis @ (basis.T @ signal)
     residual = signal - fit
     for _ in range(10):
         limit = CLIP * float(np.median(np.abs(residual))) / 0.6745
         clipped = np.clip(residual, -limit, limit)
-        step = basis @ (basis.T @ clipped)
+        share = max(float(np.mean(np.abs(residual) <= limit)), 0.5)
+        step = basis @ (basis.T @ clipped) / share
         fit = fit + step
         residual = signal - fit
         if float(step @ step) < 1e-8 * float(clipped @ clipped):
             break
-    return fit, np.clip(residual, -limit, limit)
+    return fit, np.clip(residual, -limit, limit) / share

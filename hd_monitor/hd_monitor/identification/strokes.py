@@ -169,7 +169,7 @@ class StrokeCutter:
         if self._period is None:
             self._period = float(np.median(np.diff(rows[:, 0])))
         period = self._period
-        averaged = max(1, int(1.0 / period / WORKING_RATE))
+        averaged = max(1, int(1.02 / period / WORKING_RATE))  # stamps in whole milliseconds round the period
         self.turning += len(rows) * period
         limit = HIGHEST_SHARE / (period * averaged) * math.tau / self._lowest
         fast = np.abs(rows[:, 2]) > limit

@@ -26,7 +26,7 @@ MARGIN = math.log(1000.0)
 """Difference of log evidence, odds of 1000 to 1, by which the best pair must lead."""
 
 ENCODER_ORDERS = (64, 128, 256, 512)
-"""Periods per revolution of common encoders, whose interpolation errors show as lines with sidebands one order beside."""
+"""Periods per revolution of common encoders, whose interpolation errors show as lines, with sidebands beside."""
 
 CLIP = 4.0
 """Robust standard deviations at which the whitened signal is clipped before any line is known."""
