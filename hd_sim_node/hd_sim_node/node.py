@@ -21,8 +21,9 @@ from rclpy.qos import QoSProfile
 from rclpy.task import Future
 
 from .node_parameters import NODE_PARAMETERS
+from .parameters import CHANGEABLE, PARAMETERS
 from .publishers import WRITERS, Writer
-from .settings import CHANGEABLE, PARAMETERS, RigSettings, pick
+from .settings import RigSettings, pick
 from .simulation import Simulation, check_stability
 from .stream import Stream
 
@@ -105,7 +106,7 @@ class HdSimNode(LifecycleNode):
     def _check(self, parameters: Sequence[RosParameter]) -> SetParametersResult:
         try:
             settings = self._settings(parameters)
-            if self._simulation is not None:
+            if self._simulation is not None and settings != self._simulation.settings:
                 check_stability(settings)
         except HdMonitorError as error:
             return SetParametersResult(successful=False, reason=str(error))

@@ -54,7 +54,8 @@ class Stream:
 
     def set_scale(self, scale: float, clock: float) -> None:
         """Go on at another pace from `clock` [s] on."""
-        self._anchor = (clock, self._target(clock))
+        # What could not be kept up with is not caught up with either.
+        self._anchor = (clock, min(self._target(clock), self._sent + NANOSECONDS))
         self._scale = scale
 
     def lag(self, clock: float) -> float:

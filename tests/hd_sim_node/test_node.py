@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from hd_monitor.contract import NANOSECONDS, unpack_block
 from hd_sim_node.node_parameters import NODE_PARAMETERS
-from hd_sim_node.settings import CHANGEABLE, PARAMETERS, RigSettings
+from hd_sim_node.parameters import CHANGEABLE, PARAMETERS
+from hd_sim_node.settings import RigSettings
 from hd_sim_node.simulation import Simulation
 
 pytestmark = pytest.mark.ros
