@@ -87,7 +87,7 @@ def write_report(
     page = render("report.html.j2", content=content, sections=sections)
     several = len(sections) > 1
     files = {}
-    possible = set()
+    possible: set[str] = set()
     for section in sections:
         prefix = re.sub(r"[^\w.-]+", "_", section["joint"]) + "_" if several else ""
         files.update({prefix + picture.name: picture.png for picture in section["pictures"]})

@@ -1,0 +1,210 @@
+"""What changed between two replays' results: section 6 of Gu et al. 2021 as a tool. Works on the JSON alone."""
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+from scipy.stats import norm
+
+from .errors import BagError
+from .result import plain
+
+SIGNIFICANT = 0.01
+"""Probability below which a change is no accident of the noise."""
+SMALL = 0.002
+"""Change of an index (fraction of the stiffness) that matters to nobody, however significant."""
+
+SPLINES = ("circular_spline", "flexspline")
+
+_GEOMETRY = ("reducer.flexspline_teeth", "reducer.circular_spline_teeth", "reducer.mount")
+_BASIS = ("dynamics.natural_frequency", "dynamics.damping_ratio", "input.source", "load.torque", "load.source")
+
+
+class IndexChange(NamedTuple):
+    """An index before and after, as fractions, and the probability of such a difference without a change."""
+
+    spline: str
+    before: float
+    before_std: float
+    after: float
+    after_std: float
+    p_value: float
+
+    @property
+    def change(self) -> float:
+        """After less before."""
+        return self.after - self.before
+
+    @property
+    def significant(self) -> bool:
+        """Whether noise alone would hardly make such a difference."""
+        return self.p_value < SIGNIFICANT
+
+    @property
+    def matters(self) -> bool:
+        """Whether the difference is significant and large enough to care."""
+        return self.significant and abs(self.change) >= SMALL
+
+
+class Peak(NamedTuple):
+    """The highest point of a property curve."""
+
+    rpm: float
+    rms: float
+
+
+class JointChange(NamedTuple):
+    """What changed at one joint."""
+
+    joint: str
+    before: Mapping[str, Any]
+    after: Mapping[str, Any]
+    indexes: tuple[IndexChange, ...]
+    """Empty where the indexes cannot be compared."""
+    peaks: tuple[Peak, Peak] | None
+    """Highest points at the speeds that both curves have, before and after; None if they have none in common."""
+    sentences: tuple[str, ...]
+
+
+def compare(before: Mapping[str, Any], after: Mapping[str, Any]) -> list[JointChange]:
+    """Compare two replays' results.
+
+    Parameters
+    ----------
+    before, after : mapping
+        As ``hd-monitor replay --json`` writes them.
+
+    Raises
+    ------
+    BagError
+        If they have no joint in common, or are of different reducers.
+    """
+    old = {entry["joint"]: entry for entry in before["joints"] if entry["verdict"]}
+    new = {entry["joint"]: entry for entry in after["joints"] if entry["verdict"]}
+    if len(old) == len(new) == 1:
+        pairs = [(next(iter(old.values())), next(iter(new.values())))]
+    else:
+        pairs = [(entry, new[joint]) for joint, entry in old.items() if joint in new]
+    if not pairs:
+        raise BagError(
+            f"the two have no joint in common: {', '.join(old) or 'none'} before, {', '.join(new) or 'none'} after"
+        )
+    return [_joint_change(*pair) for pair in pairs]
+
+
+def as_dict(changes: Sequence[JointChange], before: str, after: str) -> dict[str, Any]:
+    """Write changes as plain data, fit for JSON."""
+    joints = [
+        {
+            "joint": change.joint,
+            "before": change.before["verdict"],
+            "after": change.after["verdict"],
+            "indexes": [
+                item._asdict() | {"change": item.change, "significant": item.significant} for item in change.indexes
+            ],
+            "peaks": None if change.peaks is None else [peak._asdict() for peak in change.peaks],
+            "rms_curve_before": change.before["rms_curve"],
+            "rms_curve_after": change.after["rms_curve"],
+            "changes": list(change.sentences),
+        }
+        for change in changes
+    ]
+    return dict(plain({"before": before, "after": after, "joints": joints}))
+
+
+def _joint_change(before: Mapping[str, Any], after: Mapping[str, Any]) -> JointChange:
+    differing = [name for name in _GEOMETRY if _parameter(before, name) != _parameter(after, name)]
+    if differing:
+        raise BagError(
+            f"joint {before['joint']!r}: {', '.join(differing)} differ between the two; results of different reducers "
+            "cannot be compared: replay both with the right --params"
+        )
+    sentences = [_verdict_sentence(before["verdict"], after["verdict"])]
+    relative = bool(before.get("relative") or after.get("relative"))
+    indexes = () if relative else _index_changes(before["verdict"], after["verdict"])
+    if relative:
+        sentences.append(
+            "The indexes are relative, since torque or transfer function are unknown: compare their ratio only."
+        )
+    sentences += [_index_sentence(change) for change in indexes]
+    peaks = _peaks(before["rms_curve"], after["rms_curve"])
+    if peaks is not None:
+        sentences.append(_peak_sentence(*peaks))
+    elif before["rms_curve"] and after["rms_curve"]:
+        sentences.append("The two recordings have no speed in common, so that their vibration cannot be compared.")
+    changed = [name for name in _BASIS if _parameter(before, name) != _parameter(after, name)]
+    if changed:
+        sentences.append(f"Mind that the two were analysed with different values of {', '.join(changed)}.")
+    return JointChange(before["joint"], before, after, indexes, peaks, tuple(sentences))
+
+
+def _parameter(entry: Mapping[str, Any], name: str) -> Any:
+    return entry.get("parameters", {}).get(name)
+
+
+def _index_changes(before: Mapping[str, Any], after: Mapping[str, Any]) -> tuple[IndexChange, ...]:
+    changes = []
+    for spline in SPLINES:
+        values = [entry[f"{spline}_index{suffix}"] for entry in (before, after) for suffix in ("", "_std")]
+        if any(value is None for value in values):
+            continue
+        old, old_std, new, new_std = (float(value) for value in values)
+        spread = math.hypot(old_std, new_std)
+        p_value = float(2.0 * norm.sf(abs(new - old) / spread)) if spread > 0.0 else float(new == old)
+        changes.append(IndexChange(spline, old, old_std, new, new_std, p_value))
+    return tuple(changes)
+
+
+def _peaks(before: Sequence[Mapping[str, Any]], after: Sequence[Mapping[str, Any]]) -> tuple[Peak, Peak] | None:
+    """Highest points within the range of speeds that both curves cover."""
+    if not before or not after:
+        return None
+    low = max(curve[0]["rpm"] for curve in (before, after))
+    high = min(curve[-1]["rpm"] for curve in (before, after))
+    margin = 0.05 * max(low, high)
+    found = []
+    for curve in (before, after):
+        inside = [Peak(b["rpm"], b["rms"]) for b in curve if low - margin <= b["rpm"] <= high + margin]
+        if not inside:
+            return None
+        found.append(max(inside, key=lambda peak: peak.rms))
+    return found[0], found[1]
+
+
+def _name(word: str) -> str:
+    return word.replace("_", " ")
+
+
+def _verdict_sentence(before: Mapping[str, Any], after: Mapping[str, Any]) -> str:
+    words = {"none": "no defect", "both": "both splines"}
+    old, new = (words.get(verdict["component"], _name(verdict["component"])) for verdict in (before, after))
+    if (before["component"], before["level"]) == (after["component"], after["level"]):
+        return f"The verdict is the same: {old}, {before['level_name']}."
+    return f"The verdict went from {old}, {before['level_name']}, to {new}, {after['level_name']}."
+
+
+def _index_sentence(change: IndexChange) -> str:
+    name = _name(change.spline)
+    old = f"{100 * change.before:.2f} ± {100 * change.before_std:.2g} %"
+    new = f"{100 * change.after:.2f} ± {100 * change.after_std:.2g} %"
+    if not change.significant:
+        return f"The {name}'s index did not change significantly: {old} before, {new} after (p = {change.p_value:.2g})."
+    if not change.matters:
+        return f"The {name}'s index hardly changed: {old} before, {new} after."
+    verb = "rose" if change.change > 0 else "fell"
+    share = f", by {100 * abs(change.change) / change.before:.0f} %" if change.before > SMALL else ""
+    return f"The {name}'s index {verb} from {old} to {new}{share}; significant (p {_p_value(change.p_value)})."
+
+
+def _p_value(value: float) -> str:
+    return "< 0.001" if value < 0.001 else f"= {value:.2g}"
+
+
+def _peak_sentence(before: Peak, after: Peak) -> str:
+    ratio = after.rms / before.rms if before.rms > 0.0 else math.inf
+    change = "is about the same" if abs(ratio - 1.0) < 0.05 else ("rose" if ratio > 1.0 else "fell")
+    share = "" if not math.isfinite(ratio) or abs(ratio - 1.0) < 0.05 else f" to {100 * ratio:.0f} %"
+    return (
+        f"The largest vibration at the speeds that both recordings have {change}{share}: {before.rms:.3g} m/s² at "
+        f"{before.rpm:.0f} rpm before, {after.rms:.3g} m/s² at {after.rpm:.0f} rpm after."
+    )

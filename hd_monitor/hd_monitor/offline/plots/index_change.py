@@ -1,0 +1,45 @@
+"""Both indexes before and after, with their error bars and the limits."""
+
+from collections.abc import Sequence
+
+from matplotlib.figure import Figure
+
+from ..comparison import IndexChange
+from .style import AFTER, BEFORE, INK, legend_above, limits, new_figure
+
+_BANDS = 1.96
+
+
+def index_change_plot(changes: Sequence[IndexChange], *, warn: float, error: float, title: str) -> Figure:
+    """Draw index changes as pairs of columns with 95 % bars."""
+    with new_figure((8.0, 3.9)) as figure:
+        axes = figure.add_subplot()
+        axes.grid(visible=False, axis="x")
+        highest = 100 * error
+        for place, change in enumerate(changes):
+            sides = (
+                (-0.19, BEFORE, change.before, change.before_std, ""),
+                (0.19, AFTER, change.after, change.after_std, "//"),
+            )
+            for shift, look, value, std, hatch in sides:
+                axes.bar(
+                    place + shift, 100 * value, 0.34, color=look.colour, alpha=0.85, hatch=hatch, edgecolor="white",
+                    linewidth=0, label=look.label if place == 0 else "_",
+                )  # fmt: skip
+                axes.errorbar(
+                    place + shift, 100 * value, yerr=100 * _BANDS * std, color=INK, capsize=4.0, linewidth=1.4
+                )
+                top = 100 * (value + _BANDS * std)
+                axes.annotate(
+                    f"{100 * value:.2f} %", (place + shift, top), xytext=(0, 4), textcoords="offset points",
+                    ha="center", fontsize=10, bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0},
+                )  # fmt: skip
+                highest = max(highest, top)
+        limits(axes, warn, error)
+        axes.set_xticks(range(len(changes)), [change.spline.replace("_", " ") for change in changes])
+        axes.set_xlim(-0.6, len(changes) - 0.15)
+        axes.set_ylim(0.0, 1.18 * highest)
+        axes.set_ylabel("stiffness index [%]")
+        axes.set_title(title)
+        legend_above(axes)
+        return figure

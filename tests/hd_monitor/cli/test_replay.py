@@ -1,0 +1,169 @@
+"""The replay command: its JSON, its report, its exit statuses, and one clear line for what it cannot use."""
+
+import json
+import math
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hd_monitor.cli.main import main
+
+from tests.hd_monitor.offline import recordings as rec
+
+
+@pytest.fixture(scope="module")
+def recording(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    events = rec.simulated(programme="fixed", fixed__speed=1200.0, duration=12.0, defect="flexspline")
+    return rec.write(tmp_path_factory.mktemp("rig") / "bag", events)
+
+
+@pytest.fixture(scope="module")
+def report(recording: Path) -> Path:
+    folder = recording.parent / "report"
+    assert main(["replay", str(recording), "--report", str(folder)]) == 0
+    return folder
+
+
+def result_of(recording: Path, tmp_path: Path, *more: str) -> dict[str, Any]:
+    out = tmp_path / "out.json"
+    assert main(["replay", str(recording), "--json", str(out), *more]) == 0
+    return dict(json.loads(out.read_text(encoding="utf-8")))
+
+
+def test_json_is_the_contracts(recording: Path, tmp_path: Path) -> None:
+    (joint,) = result_of(recording, tmp_path)["joints"]
+    assert joint["joint"] == "joint"
+    verdict = joint["verdict"]
+    assert (verdict["component"], verdict["fault_code"], verdict["level"]) == ("flexspline", "HD_FLEXSPLINE", 2)
+    # The simulator's flexspline defect, √(0.09² + 0.04² + 0.03²), and its sound spline, √(0.01² + 0.01² + 0.005²).
+    assert verdict["flexspline_index"] == pytest.approx(math.hypot(0.09, 0.04, 0.03), abs=0.002)
+    assert verdict["circular_spline_index"] == pytest.approx(0.015, abs=0.002)
+    assert verdict["flexspline_index_std"] > 0.0
+    assert 600.0 < verdict["travel_deg"] <= 12.0 * 1200 * 6 / 80
+    assert verdict["samples"] >= 11_000
+    assert verdict["gaps"] == 0
+    assert verdict["reason"]
+    assert {"k", "circular_spline", "flexspline"} <= set(joint["lines"][0])
+    assert [line["k"] for line in joint["lines"]] == [1, 2, 3]
+    (speed,) = joint["rms_curve"]
+    assert speed["rpm"] == pytest.approx(1200.0, abs=1.0)
+    assert speed["samples"] >= 11_000
+    stamps = [entry["stamp"] for entry in joint["timeline"]]
+    assert stamps == sorted(set(stamps))
+    assert joint["timeline"][-1]["component"] == "flexspline"
+
+
+def test_json_to_standard_output_is_nothing_but_json(recording: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["replay", str(recording), "--json", "-"]) == 0
+    assert json.loads(capsys.readouterr().out)["joints"]
+
+
+def test_the_terminal_names_part_and_indexes(recording: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["replay", str(recording)]) == 0
+    out = capsys.readouterr().out
+    assert "joint: ERROR, flexspline (HD_FLEXSPLINE)" in out
+    assert "no faults in the data" in out
+
+
+def test_parameters_come_from_the_nodes_file_and_from_the_command_line(recording: Path, tmp_path: Path) -> None:
+    params = tmp_path / "p.yaml"
+    params.write_text(
+        "/**:\n  ros__parameters:\n    joints: [elbow]\n    elbow: {input: {joint_name: joint}}\n"
+        "    diagnosis: {warn_index: 0.2, error_index: 0.3}\n    reducer: {serial: HD-7}\n"
+    )
+    (joint,) = result_of(recording, tmp_path, "--params", str(params))["joints"]
+    assert (joint["joint"], joint["verdict"]["component"], joint["verdict"]["level"]) == ("elbow", "none", 0)
+    assert joint["parameters"]["reducer.serial"] == "HD-7"
+    (joint,) = result_of(recording, tmp_path, "--params", str(params), "-p", "diagnosis.warn_index:=5e-2")["joints"]
+    assert joint["verdict"]["component"] == "flexspline"
+
+
+@pytest.mark.parametrize(("level", "status"), [("warn", 1), ("error", 1)])
+def test_fail_on_makes_a_bad_verdict_fail(recording: Path, level: str, status: int) -> None:
+    assert main(["replay", str(recording), "--fail-on", level]) == status
+    sound = ["-p", "diagnosis.warn_index:=0.2", "-p", "diagnosis.error_index:=0.3"]
+    assert main(["replay", str(recording), "--fail-on", level, *sound]) == 0
+
+
+def test_fail_on_error_lets_a_warning_pass(recording: Path) -> None:
+    suspect = ["-p", "diagnosis.error_index:=0.3"]
+    assert main(["replay", str(recording), "--fail-on", "error", *suspect]) == 0
+    assert main(["replay", str(recording), "--fail-on", "warn", *suspect]) == 1
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["{none}"], "does not exist"),
+        (["{text}"], "no rosbag2 recording"),
+        (["{bag}", "--joint", "elbow"], "'elbow' is not in joint_states, which carries joint"),
+        (["{bag}", "-p", "input.source:=imu"], "no imu/data_raw (sensor_msgs/Imu) was recorded"),
+        (["{bag}", "--remap", "joint_states:=/nowhere"], "no /nowhere (sensor_msgs/JointState) was recorded"),
+        (["{bag}", "--remap", "joint_states"], "maps nothing"),
+        (["{bag}", "--namespace", "/other"], "no /other/joint_states"),
+        (["{bag}", "--params", "{none}"], "cannot be read"),
+        (["{bag}", "-p", "diagnosis.warn_indx:=1.0"], "diagnosis.warn_indx"),
+        (["{bag}", "-p", "reducer.flexspline_teeth:=163"], "swapped"),
+        (["{bag}", "--json", "{none}/out.json"], "cannot be written"),
+        (["{bag}", "--report", "{text}/report"], "cannot be written"),
+    ],
+)
+def test_what_cannot_be_used_is_said_in_one_line_with_status_2(
+    recording: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], arguments: list[str], words: str
+) -> None:
+    text = tmp_path / "text"
+    text.write_text("hello")
+    places = {"bag": str(recording), "none": str(tmp_path / "none"), "text": str(text)}
+    assert main(["replay", *(argument.format(**places) for argument in arguments)]) == 2
+    lines = capsys.readouterr().err.strip().splitlines()
+    assert len(lines) == 1
+    assert lines[0].startswith("hd-monitor replay: ")
+    assert words in lines[0]
+
+
+def test_a_cut_off_recording_says_so_and_still_gives_a_verdict(
+    recording: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    whole = rec.storage_file(recording).read_bytes()
+    cut = tmp_path / "cut.mcap"
+    cut.write_bytes(whole[: int(0.9 * len(whole))])
+    out = tmp_path / "out.json"
+    assert main(["replay", str(cut), "--json", str(out)]) == 0
+    assert "cut off" in capsys.readouterr().err
+    content = json.loads(out.read_text())
+    assert any("cut off" in note for note in content["notes"])
+    assert content["joints"][0]["verdict"]["component"] == "flexspline"
+
+
+def test_the_report_holds_everything_in_one_page(report: Path) -> None:
+    page = (report / "index.html").read_text(encoding="utf-8")
+    pictures = sorted(path.stem for path in report.glob("*.png"))
+    # One speed only: nothing is drawn over speed.
+    assert pictures == ["indexes", "order_spectrum", "phase_trace", "spectrum", "waterfall", "zoom_spectrum"]
+    assert len(re.findall(r'<img [^>]*src="data:image/png;base64,', page)) == len(pictures)
+    assert not re.findall(r'(?:src|href)="(?!data:|#)', page)
+    assert "http" not in page
+    assert "The flexspline is defective" in page
+    for words in ("gaps", "duplicates", "out of order", "clipped", "joint states"):
+        assert f"<td>{words}</td>" in page
+
+
+def test_the_report_of_many_speeds_draws_over_speed(tmp_path: Path) -> None:
+    bag = rec.write(tmp_path / "bag", rec.simulated(programme="sweep", duration=20.0, defect="both"))
+    assert main(["replay", str(bag), "--report", str(tmp_path / "report")]) == 0
+    pictures = {path.stem for path in (tmp_path / "report").glob("*.png")}
+    assert {"order_map", "rms_curve", "line_amplitudes"} <= pictures
+
+
+def test_each_joint_has_its_pictures(tmp_path: Path) -> None:
+    motion: dict[str, Any] = {"programme": "fixed", "fixed__speed": 1200.0, "duration": 6.0}
+    events = [
+        event._replace(topic="/joint_states") if event.topic.endswith("joint_states") else event
+        for joint in ("a", "b")
+        for event in rec.simulated(prefix=f"/{joint}", joint=joint, **motion)
+    ]
+    bag = rec.write(tmp_path / "bag", events)
+    assert main(["replay", str(bag), "--joint", "a", "--joint", "b", "--report", str(tmp_path / "report")]) == 0
+    names = {path.name for path in (tmp_path / "report").glob("*.png")}
+    assert {"a_zoom_spectrum.png", "b_zoom_spectrum.png"} <= names

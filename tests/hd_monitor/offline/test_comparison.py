@@ -1,0 +1,72 @@
+"""A change is called significant as often as its probability says, and named only if it matters."""
+
+import numpy as np
+import pytest
+from hd_monitor.offline.comparison import compare
+from hd_monitor.offline.errors import BagError
+
+
+def result(joint="joint", *, cs=0.05, fs=0.02, std=0.002, curve=((500.0, 1.0), (1000.0, 4.0)), **parameters):
+    verdict = {"component": "none", "level": 0, "level_name": "OK", "fault_code": "HD_OK", "reason": "", "samples": 1}
+    verdict |= {"gaps": 0, "circular_spline_index": cs, "circular_spline_index_std": std}
+    verdict |= {"flexspline_index": fs, "flexspline_index_std": std}
+    rms = [{"rpm": rpm, "rms": value, "samples": 10} for rpm, value in curve]
+    entry = {"joint": joint, "verdict": verdict, "rms_curve": rms, "parameters": parameters, "relative": False}
+    return {"joints": [entry]}
+
+
+def test_chance_is_called_significant_once_in_a_hundred() -> None:
+    dice = np.random.default_rng(11)
+    trials = 3000
+    false = 0
+    for before, after in dice.normal(0.05, 0.002, (trials, 2)):
+        (change,) = compare(result(cs=before), result(cs=after))
+        false += change.indexes[0].significant
+    # 30 expected; binomial standard deviation 5.4
+    assert 10 <= false <= 52
+
+
+def test_a_significant_change_too_small_to_care_is_said_to_be_none() -> None:
+    (change,) = compare(result(cs=0.0500, std=1e-6), result(cs=0.0505, std=1e-6))
+    assert change.indexes[0].significant
+    assert "circular spline's index hardly changed" in change.sentences[1]
+
+
+def test_peaks_are_compared_at_speeds_that_both_have() -> None:
+    low = result(curve=((500.0, 1.0), (1000.0, 4.0)))
+    wide = result(curve=((500.0, 0.5), (1000.0, 2.0), (1700.0, 30.0)))
+    (change,) = compare(low, wide)
+    assert change.peaks is not None
+    assert [peak.rms for peak in change.peaks] == [4.0, 2.0]
+    (change,) = compare(low, result(curve=((2000.0, 3.0),)))
+    assert change.peaks is None
+    assert "no speed in common" in " ".join(change.sentences)
+
+
+def test_different_reducers_are_refused() -> None:
+    old, new = ({"reducer.flexspline_teeth": teeth} for teeth in (160, 200))
+    with pytest.raises(BagError, match=r"reducer\.flexspline_teeth differ"):
+        compare(result(**old), result(**new))
+
+
+def test_another_basis_is_mentioned() -> None:
+    old, new = ({"dynamics.natural_frequency": value} for value in (55.0, 50.0))
+    (change,) = compare(result(**old), result(**new))
+    assert "different values of dynamics.natural_frequency" in change.sentences[-1]
+
+
+def test_one_joint_each_is_compared_whatever_its_name_and_several_by_their_names() -> None:
+    (change,) = compare(result("elbow"), result("elbow_new"))
+    assert change.joint == "elbow"
+    two = {"joints": result("a")["joints"] + result("b")["joints"]}
+    assert [change.joint for change in compare(two, two)] == ["a", "b"]
+    with pytest.raises(BagError, match="no joint in common: a, b before, c after"):
+        compare(two, result("c"))
+
+
+def test_relative_indexes_are_not_compared_in_size() -> None:
+    relative = result()
+    relative["joints"][0]["relative"] = True
+    (change,) = compare(relative, result())
+    assert change.indexes == ()
+    assert any("relative" in sentence for sentence in change.sentences)
