@@ -19,10 +19,11 @@ RAMP = 5000.0  # rpm/s
 def dwell(speed: float) -> float:
     """Time at a speed [s]: a whole number of beats, so that the RMS is the steady one, and no less than 6 s.
 
-    Right above a resonance more: what still rings from the louder speed before counts there.
+    Right above a resonance more, as what still rings from the louder speed before counts there; at the last speed
+    too, as it is read before its end.
     """
     beat = 1.0 / RigSettings.from_mapping({}).reducer.line_separation(speed)
-    least = 24.0 if speed in (900.0, 1800.0) else 12.0 if speed in (1000.0, 1900.0) else 6.0
+    least = {900.0: 48.0, 1000.0: 12.0, 1800.0: 36.0, 1900.0: 12.0, SPEEDS[-1]: 24.0}.get(speed, 6.0)
     return float(beat * np.ceil(least / beat - 1e-9))
 
 
@@ -52,7 +53,8 @@ RIG: dict[str, Any] = {
     "sensor.rate": RATE,
     "sensor.noise": 0.0,  # it would add to the RMS of the slow speeds; the model knows none
     "block_size": 250,
-    "joint_states.rate": 50.0,
+    # 4500 in all, so that none is lost however far the monitor falls behind: Fast DDS keeps no more than 5000
+    "joint_states.rate": 15.0,
 }
 # What is watched here is the curve; a short memory spares identification on the way.
 MONITOR = ("input.queue_seconds:=60.0", f"input.expected_rate:={RATE}", "analysis.memory:=3.0")
@@ -70,11 +72,12 @@ def test_figure_16_through_the_nodes_is_the_models_curve_within_2_per_cent(bench
         return data[3 * number + 2] if len(data) > 3 * number else 0.0
 
     for number, speed in enumerate(SPEEDS.tolist()):
-        enough = (dwell(speed) - 1.5) * RATE  # the last, unfinished second is not assessed
+        enough = (dwell(speed) - 2.0) * RATE  # unfinished seconds are not assessed
         bench.until(lambda n=number, least=enough: samples_at(n) >= least, f"{speed:g} rpm in the property curve")
     rpm, rms, samples = np.reshape(np.asarray(curves[-1].data), (-1, 3)).T
     assert rpm == pytest.approx(SPEEDS, abs=1.0)
-    assert samples[:-1] == pytest.approx([(dwell(n) + 100.0 / RAMP) * RATE for n in SPEEDS[:-1].tolist()], rel=0.01)
+    # A vibration that rises steeply may lose a few samples to the screening for spikes
+    assert samples[:-1] == pytest.approx([(dwell(n) + 100.0 / RAMP) * RATE for n in SPEEDS[:-1].tolist()], rel=0.02)
 
     model = RigSettings.from_mapping(RIG).model
     assert max(growth_rate(model, n) for n in SPEEDS) < 0.0  # else there is no steady state to compare with
