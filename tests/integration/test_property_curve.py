@@ -19,11 +19,11 @@ RAMP = 5000.0  # rpm/s
 def dwell(speed: float) -> float:
     """Time at a speed [s]: a whole number of beats, so that the RMS is the steady one, and no less than 6 s.
 
-    Right above a resonance more, as what still rings from the louder speed before counts there; at the last speed
+    More at the first speed and right above a resonance, as what still rings from before counts there; at the last speed
     too, as it is read before its end.
     """
     beat = 1.0 / RigSettings.from_mapping({}).reducer.line_separation(speed)
-    least = {900.0: 48.0, 1000.0: 12.0, 1800.0: 36.0, 1900.0: 12.0, SPEEDS[-1]: 24.0}.get(speed, 6.0)
+    least = {200.0: 24.0, 900.0: 48.0, 1000.0: 12.0, 1800.0: 36.0, 1900.0: 12.0, SPEEDS[-1]: 24.0}.get(speed, 6.0)
     return float(beat * np.ceil(least / beat - 1e-9))
 
 
@@ -53,7 +53,7 @@ RIG: dict[str, Any] = {
     "sensor.rate": RATE,
     "sensor.noise": 0.0,  # it would add to the RMS of the slow speeds; the model knows none
     "block_size": 250,
-    # 4500 in all, so that none is lost however far the monitor falls behind: Fast DDS keeps no more than 5000
+    # 4700 in all, so that none is lost however far the monitor falls behind: Fast DDS keeps no more than 5000
     "joint_states.rate": 15.0,
 }
 # What is watched here is the curve; a short memory spares identification on the way.
