@@ -1,5 +1,6 @@
 """The node ``hd_monitor_node``: any number of joints, from their topics to /diagnostics."""
 
+import signal
 import sys
 import traceback
 from collections.abc import Callable
@@ -277,6 +278,8 @@ def main(args: list[str] | None = None) -> int:
         get_logger(NAME).fatal(str(error))
         return UNUSABLE_INPUT
     finally:
+        # launch sends a second SIGINT, which must not cut the cleaning up short.
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
         if node is not None:
             node.destroy_node()
         rclpy.try_shutdown()
