@@ -1,13 +1,15 @@
 """Gauss-Newton fit of the unknowns to a number of stretches at once."""
 
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
+from .knowledge import Knowledge
 from .linearisation import Predictor
-from .noise_floor import NoiseFloor, Spectral
+from .noise_floor import NoiseFloor
 from .normal_equations import Evidence, NormalEquations, examine
 from .stretch import Stretch
 
@@ -17,32 +19,12 @@ BoolArray = npt.NDArray[np.bool_]
 LARGEST_FLUCTUATION = 0.8
 """Sum of all abs(β) beyond which the stiffness would come near zero; steps end there."""
 
+CONVERGED = 0.05
+"""Size of a step, in standard deviations of the unknowns, below which the fit stands."""
+
 _HALVINGS = 5
-
-
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Prior:
-    """What is known before the stretches at hand, as the quadratic ``x·information·x - 2 vector·x``."""
-
-    information: FloatArray
-    vector: FloatArray
-
-    @classmethod
-    def gaussian(cls, mean: FloatArray, std: FloatArray) -> "Prior":
-        """Return the knowledge of independent unknowns with these means and standard deviations."""
-        weight = 1.0 / np.square(std)
-        return cls(information=np.diag(weight), vector=weight * mean)
-
-    def cost(self, values: FloatArray) -> float:
-        """Return the price of `values`, but for a constant."""
-        return float(values @ self.information @ values - 2.0 * self.vector @ values)
-
-    def plus(self, equations: NormalEquations, values: FloatArray) -> "Prior":
-        """Add evidence that was linearised at `values`."""
-        return Prior(
-            information=self.information + equations.information,
-            vector=self.vector + equations.information @ values + equations.gradient,
-        )
+_TRIAL_ROUNDS = 3  # after which the best of several starts go on
+_FINALISTS = 2
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -58,15 +40,26 @@ class Fit:
         Their sum, without the prior.
     cost : float
         Cost including the prior's.
-    step : float
-        Size of the next step in standard deviations of the unknowns; small if the fit has converged.
+    step : ndarray, shape (unknowns,)
+        The next step.
+    step_size : float
+        Its size in standard deviations of the unknowns.
     """
 
     values: FloatArray
     evidence: tuple[Evidence, ...]
     equations: NormalEquations
     cost: float
-    step: float
+    step: FloatArray
+    step_size: float
+
+    @property
+    def floor(self) -> NoiseFloor:
+        """Noise floor of what the fit leaves."""
+        floor = NoiseFloor()
+        for item in self.evidence:
+            floor = floor.updated(item.stretch, item.residual, unknowns=self.values.size / len(self.evidence))
+        return floor
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -76,64 +69,80 @@ class Problem:
     Attributes
     ----------
     stretches : sequence of Stretch
-    spectrals : sequence of Spectral
     predictor : Predictor
-    prior : Prior
+    prior : Knowledge
     floor : NoiseFloor
     active : ndarray of bool, shape (unknowns,)
         Unknowns that may move.
     """
 
     stretches: Sequence[Stretch]
-    spectrals: Sequence[Spectral]
     predictor: Predictor
-    prior: Prior
+    prior: Knowledge
     floor: NoiseFloor
     active: BoolArray
 
     def at(self, values: FloatArray) -> Fit:
         """Evaluate a point."""
-        evidence = tuple(
-            examine(stretch, spectral, self.predictor, values, self.floor)
-            for stretch, spectral in zip(self.stretches, self.spectrals, strict=True)
-        )
+        evidence = tuple(examine(stretch, self.predictor, values, self.floor) for stretch in self.stretches)
         equations = evidence[0].equations
         for item in evidence[1:]:
             equations = equations + item.equations
-        step, information = self._step(equations, values)
+        information = equations.information + self.prior.information
+        right = equations.gradient + self.prior.gradient(values)
+        step = np.zeros(values.size)
+        inner = information[np.ix_(self.active, self.active)]
+        step[self.active] = np.linalg.lstsq(inner, right[self.active], rcond=1e-13)[0]
         return Fit(
             values=values,
             evidence=evidence,
             equations=equations,
             cost=equations.cost + self.prior.cost(values),
-            step=float(np.sqrt(max(step @ information @ step, 0.0))),
+            step=step,
+            step_size=math.sqrt(max(float(step @ information @ step), 0.0)),
         )
 
-    def _step(self, equations: NormalEquations, values: FloatArray) -> tuple[FloatArray, FloatArray]:
-        total = equations.information + self.prior.information
-        right = equations.gradient + self.prior.vector - self.prior.information @ values
-        step = np.zeros(values.size)
-        inner = total[np.ix_(self.active, self.active)]
-        step[self.active] = np.linalg.lstsq(inner, right[self.active], rcond=1e-13)[0]
-        return step, total
-
-    def solve(self, start: FloatArray, *, rounds: int, tolerance: float = 0.05) -> Fit:
-        """Take Gauss-Newton steps from `start` until they are below `tolerance` standard deviations."""
+    def solve(self, start: FloatArray, *, rounds: int) -> Fit:
+        """Take Gauss-Newton steps from `start`, at most `rounds`."""
         fit = self.at(start)
         for _ in range(rounds):
-            if fit.step < tolerance:
+            if fit.step_size < CONVERGED:
                 break
-            step, _ = self._step(fit.equations, fit.values)
-            step *= self._room(fit.values, step)
+            step = fit.step * self._room(fit.values, fit.step)
             for _ in range(_HALVINGS):
                 trial = self.at(fit.values + step)
-                if np.isfinite(trial.cost) and trial.cost < fit.cost:
+                if math.isfinite(trial.cost) and trial.cost < fit.cost:
                     break
                 step = 0.4 * step
             else:
                 break
             fit = trial
         return fit
+
+    def explore(self, starts: Sequence[FloatArray], *, rounds: int) -> tuple["Problem", Fit]:
+        """Solve from several starts and return the best solution, with the floor of white noise that belongs to it.
+
+        The first step from each start leaves the load where the start has it: only then do the stiffness unknowns
+        mean anything to the load. While the residual is still large the floor is taken to be white, lest the lines
+        that are not explained yet pass for noise.
+        """
+        unknowns = self.predictor.unknowns
+        held = self.active & ~unknowns.mask(unknowns.load)
+        first = [replace(self, active=held).solve(start, rounds=1) for start in starts]
+        tried = sorted((self._scaled(fit)._priced(fit, _TRIAL_ROUNDS) for fit in first), key=lambda t: t[0])
+        final = [problem._scaled(fit)._priced(fit, rounds) for _, problem, fit in tried[:_FINALISTS]]
+        _, problem, fit = min(final, key=lambda t: t[0])
+        return problem, fit
+
+    def _scaled(self, fit: Fit) -> "Problem":
+        """Return the problem with a floor of white noise as strong as what a fit leaves."""
+        return replace(self, floor=NoiseFloor.white(self.floor.mean * fit.equations.cost / fit.equations.freedom))
+
+    def _priced(self, start: Fit, rounds: int) -> tuple[float, "Problem", Fit]:
+        """Solve, and give minus twice the logarithm of the likelihood, the noise's variance being at its own best."""
+        fit = self.solve(start.values, rounds=rounds)
+        freedom = fit.equations.freedom
+        return freedom * math.log(self.floor.mean * fit.equations.cost) + self.prior.cost(fit.values), self, fit
 
     def _room(self, values: FloatArray, step: FloatArray) -> float:
         """Part of a step that keeps the stiffness positive."""

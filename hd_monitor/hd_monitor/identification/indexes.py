@@ -1,7 +1,7 @@
 """From β phasors to the two splines' indexes, with the bias that noise brings removed and their joint uncertainty."""
 
 import math
-from typing import NamedTuple
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -12,7 +12,8 @@ from .unknowns import Unknowns
 FloatArray = npt.NDArray[np.float64]
 
 
-class Indexes(NamedTuple):
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Indexes:
     """Root-sum-square β of both splines, their standard deviations and the correlation of the two."""
 
     index: LinePair
@@ -57,4 +58,4 @@ def stiffness_indexes(unknowns: Unknowns, values: FloatArray, covariance: FloatA
     product = spread[0] * spread[1]
     joint = 4.0 * float(z[0] @ c[0][1] @ z[1])
     correlation = float(np.clip(joint / product, -1.0, 1.0)) if product > 0.0 else 0.0
-    return Indexes(LinePair(*index), LinePair(*std), correlation)
+    return Indexes(index=LinePair(*index), std=LinePair(*std), correlation=correlation)

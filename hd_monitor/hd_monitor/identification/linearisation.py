@@ -1,11 +1,12 @@
 """The model's prediction of a stretch, and how it changes with every unknown."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from ..model.oscillator import GAUSS_OFFSETS, Oscillator, Response
+from ..model.oscillator import GAUSS_OFFSETS, Oscillator
 from ..model.parameters import Dynamics
 from .stretch import Path, Stretch
 from .unknowns import Unknowns
@@ -52,64 +53,71 @@ class Predictor:
     given: Dynamics
     reference_torque: float
 
-    def stiffness(self, path: Path, values: FloatArray) -> FloatArray:
-        """Relative stiffness K/Kav along a path."""
-        return np.asarray(1.0 + path.lines @ values[self.unknowns.stiffness])
-
-    def drive(self, path: Path, values: FloatArray) -> FloatArray:
-        """Torque over inertia [rad/s²] along a path."""
-        load = self.reference_torque * (path.loads @ values[self.unknowns.load])
-        return np.asarray((path.torque + load) / self.given.inertia)
-
     def linearise(self, stretch: Stretch, values: FloatArray) -> Linearisation:
-        """Simulate a stretch and, along the same path, the effect of every unknown.
+        """Simulate a stretch and, along the same motion, the effect of every unknown.
 
         Every sensitivity obeys the oscillator's own equation with another input (differentiate eq. 3 of Gu et al.
         2021 by the unknown), so that one set of transition matrices serves them all.
         """
-        unknowns, dynamics = self.unknowns, self.unknowns.dynamics(self.given, values)
-        omega = dynamics.angular_frequency
-        gauss, nodes = stretch.at_gauss, stretch.at_steps
-        k_gauss, k_nodes = self.stiffness(gauss, values), self.stiffness(nodes, values)
-        step = stretch.period / stretch.substeps
-        oscillator = Oscillator(dynamics, k_gauss - 1.0, step)
+        dynamics = self.unknowns.dynamics(self.given, values)
+        omega, step = dynamics.angular_frequency, stretch.period / stretch.substeps
+        gauss = _Along(self, stretch.at_gauss, values, dynamics)
+        nodes = _Along(self, stretch.at_steps, values, dynamics)
+        oscillator = Oscillator(dynamics, gauss.stiffness - 1.0, step)
         damping = 2.0 * dynamics.damping_ratio * omega
-        spring = (omega**2 * k_nodes)[:, None]
+        spring = (omega**2 * nodes.stiffness)[:, None]
 
-        # Response from the quasi-static wind-up, and the two free vibrations
-        inputs = np.zeros((2, oscillator.steps, 3))
-        inputs[..., 0] = self.drive(gauss, values)
-        force = np.zeros((nodes.torque.size, 3))
-        force[:, 0] = self.drive(nodes, values)
+        # From the quasi-static wind-up, and the two free vibrations
+        inputs, force = np.zeros((2, oscillator.steps, 3)), np.zeros((oscillator.steps + 1, 3))
+        inputs[..., 0], force[:, 0] = gauss.drive, nodes.drive
         wound = force[0, 0] / spring[0, 0]
         base = oscillator.respond(inputs, initial=[[wound, 1.0, 0.0], [0.0, 0.0, omega]])
         motion = force - damping * base.velocity - spring * base.displacement
-        motion = motion[:: stretch.substeps]
-        start, residual = _fit_start(stretch, motion)
-        theta = base.displacement[:, 0] + base.displacement[:, 1:] @ start
-        theta_dot = base.velocity[:, 0] + base.velocity[:, 1:] @ start
-        slope = (force - damping * base.velocity - spring * base.displacement) @ np.append(1.0, start)
+        sampled = motion[:: stretch.substeps]
+        start, residual = _fit_start(stretch, sampled)
+        mix = np.concatenate([[1.0], start])
+        theta, theta_dot, theta_ddot = base.displacement @ mix, base.velocity @ mix, motion @ mix
 
-        middle, middle_dot = _between(theta, theta_dot, slope, step)
-        u_gauss = self._forcing(gauss, middle, middle_dot, k_gauss, dynamics)
-        u_nodes = self._forcing(nodes, theta, theta_dot, k_nodes, dynamics)[:: stretch.substeps]
-        change: Response = oscillator.respond(u_gauss)
-        jacobian = u_nodes - damping * change.velocity[:: stretch.substeps]
-        jacobian -= spring[:: stretch.substeps] * change.displacement[:: stretch.substeps]
-        predicted = motion[:, 0] + motion[:, 1:] @ start
-        return Linearisation(residual=residual, predicted=predicted, jacobian=jacobian, free=motion[:, 1:])
+        u_gauss = gauss.forcing(_hermite(theta, theta_dot * step), _hermite(theta_dot, theta_ddot * step))
+        change = oscillator.respond(u_gauss)
+        jacobian = nodes.forcing(theta, theta_dot)
+        jacobian -= damping * change.velocity
+        jacobian -= spring * change.displacement
+        return Linearisation(
+            residual=residual, predicted=sampled @ mix, jacobian=jacobian[:: stretch.substeps], free=sampled[:, 1:]
+        )
 
-    def _forcing(
-        self, path: Path, theta: FloatArray, theta_dot: FloatArray, stiffness: FloatArray, dynamics: Dynamics
-    ) -> FloatArray:
-        """Inputs of the sensitivities' equations, shape (..., unknowns)."""
-        unknowns, omega = self.unknowns, dynamics.angular_frequency
+
+class _Along:
+    """The model's coefficients along a path, and the inputs of the sensitivities' equations."""
+
+    def __init__(self, predictor: Predictor, path: Path, values: FloatArray, dynamics: Dynamics) -> None:
+        self._unknowns = unknowns = predictor.unknowns
+        self._path, self._dynamics = path, dynamics
+        self._beta = values[unknowns.stiffness]
+        self._lines = path.lines_after(float(values[unknowns.delay]))
+        self._load_unit = predictor.reference_torque / predictor.given.inertia
+        self._torque = math.exp(values[unknowns.torque]) / predictor.given.inertia * path.torque
+        self.stiffness = np.asarray(1.0 + self._lines @ self._beta)
+        self.drive = np.asarray(self._torque + self._load_unit * (path.loads @ values[unknowns.load]))
+
+    def forcing(self, theta: FloatArray, theta_dot: FloatArray) -> FloatArray:
+        """Inputs [rad/s² per unit of each unknown] where θ and θ' are as given, shape (..., unknowns)."""
+        unknowns, path = self._unknowns, self._path
+        omega = self._dynamics.angular_frequency
+        spring = -(omega**2) * theta
         forcing = np.empty((*theta.shape, unknowns.size))
-        np.multiply(path.lines, (-(omega**2) * theta)[..., None], out=forcing[..., unknowns.stiffness])
-        np.multiply(path.loads, self.reference_torque / self.given.inertia, out=forcing[..., unknowns.load])
-        friction = -2.0 * dynamics.damping_ratio * omega * theta_dot
-        forcing[..., unknowns.frequency] = friction - 2.0 * omega**2 * stiffness * theta
+        np.multiply(self._lines, spring[..., None], out=forcing[..., unknowns.stiffness])
+        np.multiply(path.loads, self._load_unit, out=forcing[..., unknowns.load])
+        friction = -2.0 * self._dynamics.damping_ratio * omega * theta_dot
+        forcing[..., unknowns.frequency] = friction + 2.0 * spring * self.stiffness
         forcing[..., unknowns.damping] = friction
+        forcing[..., unknowns.torque] = self._torque
+        # d cos = -sin, d(-sin) = -cos: the other column of the pair, with its sign
+        cosine, other = path.quadrature(self._lines)
+        forcing[..., unknowns.delay] = (
+            spring * path.speed * (other @ (np.where(cosine, 1.0, -1.0) * path.rates * self._beta))
+        )
         return forcing
 
 
@@ -123,16 +131,9 @@ def _fit_start(stretch: Stretch, motion: FloatArray) -> tuple[FloatArray, FloatA
     return start, error - free @ start
 
 
-def _between(
-    position: FloatArray, velocity: FloatArray, acceleration: FloatArray, step: float
-) -> tuple[FloatArray, FloatArray]:
-    """Position and velocity at the Gauss points by Hermite interpolation, shape (2, steps) each."""
-    return _hermite(position, velocity * step), _hermite(velocity, acceleration * step)
-
-
 def _hermite(values: FloatArray, slopes: FloatArray) -> FloatArray:
+    """Values at the Gauss points of every step, shape (2, steps); `slopes` are per step."""
     u = np.asarray(GAUSS_OFFSETS)[:, None]
     rise = np.diff(values)
-    return np.asarray(
-        values[:-1] + u * (rise + (1.0 - u) * ((slopes[:-1] - rise) * (1.0 - u) + (rise - slopes[1:]) * u))
-    )
+    first, last = slopes[:-1] - rise, rise - slopes[1:]
+    return np.asarray(values[:-1] + u * (rise + (1.0 - u) * (first * (1.0 - u) + last * u)))

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .linearisation import Linearisation, Predictor
-from .noise_floor import NoiseFloor, Spectral
+from .noise_floor import NoiseFloor
 from .stretch import Stretch
 
 FloatArray = npt.NDArray[np.float64]
@@ -48,39 +48,38 @@ class Evidence:
 
     Attributes
     ----------
+    stretch : Stretch
     equations : NormalEquations
     linearisation : Linearisation
-    spectral : Spectral
     residual : ndarray, shape (2 * bins,)
         Transform of the residual, free vibrations taken off, not weighted.
     """
 
+    stretch: Stretch
     equations: NormalEquations
     linearisation: Linearisation
-    spectral: Spectral
     residual: FloatArray
 
 
-def examine(
-    stretch: Stretch, spectral: Spectral, predictor: Predictor, values: FloatArray, floor: NoiseFloor
-) -> Evidence:
+def examine(stretch: Stretch, predictor: Predictor, values: FloatArray, floor: NoiseFloor) -> Evidence:
     """Linearise a stretch at `values` and weight it by the noise floor."""
     line = predictor.linearise(stretch, values)
-    columns = spectral(np.concatenate([line.residual[:, None], line.free, line.jacobian], axis=1))
-    std = np.sqrt(np.tile(floor.density(spectral.frequencies), 2))
-    white = columns / std[:, None]
-    free, _ = np.linalg.qr(white[:, 1:3])
-    white = np.delete(white, (1, 2), axis=1)
+    columns = stretch.transform(np.concatenate([line.free, line.residual[:, None], line.jacobian], axis=1))
+    frequencies = stretch.frequencies
+    std = np.tile(floor.sample_std(frequencies, stretch.period), 2)
+    columns /= std[:, None]
+    free, _ = np.linalg.qr(columns[:, :2])
+    white = columns[:, 2:]
     white -= free @ (free.T @ white)
     gram = white.T @ white
     return Evidence(
+        stretch=stretch,
         equations=NormalEquations(
             information=gram[1:, 1:],
             gradient=gram[1:, 0],
             cost=float(gram[0, 0]),
-            freedom=2.0 * spectral.frequencies.size * spectral.fill - 2.0,
+            freedom=2.0 * frequencies.size * stretch.fill - 2.0,
         ),
         linearisation=line,
-        spectral=spectral,
         residual=white[:, 0] * std,
     )

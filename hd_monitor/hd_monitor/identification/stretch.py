@@ -6,11 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.ndimage import median_filter
+from scipy import fft
 
 from ..acquisition.record import Record
 from ..model.oscillator import GAUSS_OFFSETS
 from ..reducer import Reducer
+from .conditioning import condition
 
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
@@ -18,8 +19,8 @@ BoolArray = npt.NDArray[np.bool_]
 LARGEST_PHASE_STEP = 1.0
 """Phase [rad] of the natural oscillation and of the fastest stiffness harmonic that an integration step may cover."""
 
-OUTLIER = 8.0
-"""Robust standard deviations by which a sample must stick out of its neighbours to be left out."""
+_FREQUENCY_MARGIN = 1.15  # by which the natural frequency may turn out higher than given
+_SIDE_ORDERS = 4.0  # orders above the highest line at which load fluctuations may still put side lines
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -30,15 +31,35 @@ class Path:
     ----------
     lines : ndarray, shape S + (4 * harmonics,)
         cos and -sin of every harmonic's angle, in the order of the unknowns: times β they give the stiffness.
+    rates : ndarray, shape (4 * harmonics,)
+        Orders of these angles, cycles per output revolution.
     loads : ndarray, shape S + (2 * load orders,)
         cos and -sin of the load angles.
     torque : ndarray, shape S
         Known torque [N·m].
+    speed : ndarray, shape S
+        Output speed [rad/s].
     """
 
     lines: FloatArray
+    rates: FloatArray
     loads: FloatArray
     torque: FloatArray
+    speed: FloatArray
+
+    def lines_after(self, delay: float) -> FloatArray:
+        """Return `lines` at the angle that the output has `delay` [s] later."""
+        if delay == 0.0:
+            return self.lines
+        shift = np.multiply.outer(self.speed * delay, self.rates)
+        cosine, other = self.quadrature(self.lines)
+        return np.asarray(np.cos(shift) * self.lines + np.sin(shift) * np.where(cosine, other, -other))
+
+    def quadrature(self, lines: FloatArray) -> tuple[BoolArray, FloatArray]:
+        """Mark the columns that hold cosines, and return the columns with cos and -sin of each angle exchanged."""
+        harmonics = self.rates.size // 4
+        swapped = lines.reshape(*lines.shape[:-1], 2, 2, harmonics)[..., ::-1, :].reshape(lines.shape)
+        return np.tile(np.repeat([True, False], harmonics), 2), swapped
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -63,6 +84,12 @@ class Stretch:
         The motion at the two Gauss points of every step, shape (2, steps).
     slow : ndarray, shape (samples, terms)
         Orthonormal directions of slow motion (0 where samples are left out), no part of the torsional vibration.
+    highest_frequency : float
+        Frequency [Hz] up to which the samples are to be trusted.
+    raw_samples : int
+        Samples of the sensor behind it.
+    outliers : int
+        Of these, left out because they stuck out of their neighbours.
     """
 
     start: float
@@ -75,6 +102,9 @@ class Stretch:
     at_steps: Path
     at_gauss: Path
     slow: FloatArray
+    highest_frequency: float
+    raw_samples: int
+    outliers: int
 
     def __len__(self) -> int:
         """Return the number of samples, those left out included."""
@@ -84,6 +114,40 @@ class Stretch:
     def duration(self) -> float:
         """Length [s]."""
         return len(self) * self.period
+
+    @property
+    def travel(self) -> float:
+        """Length of the way [rad] that the output went, there and back counted twice."""
+        return float(np.abs(np.diff(self.angle)).sum())
+
+    @property
+    def frequencies(self) -> FloatArray:
+        """Frequencies [Hz] of the rows of :meth:`transform`, shape (bins,)."""
+        length, bins = self._bins()
+        return np.asarray(fft.rfftfreq(length, self.period)[bins])
+
+    @property
+    def fill(self) -> float:
+        """Expected square of a row of :meth:`transform` of white noise of unit variance."""
+        return int(self.used.sum()) / self._bins()[0]
+
+    def transform(self, signals: FloatArray) -> FloatArray:
+        """Spectra of signals, shape (samples, columns), between slow motion and the highest frequency.
+
+        Real parts of all bins over their imaginary parts, shape (2 * bins, columns).
+        """
+        x = signals * self.used[:, None]
+        x -= self.slow @ (self.slow.T @ x)
+        length, bins = self._bins()
+        spectrum = fft.rfft(x, length, axis=0)[bins] * math.sqrt(2.0 / length)
+        return np.concatenate([spectrum.real, spectrum.imag])
+
+    def _bins(self) -> tuple[int, slice]:
+        """Length of the Fourier transform, and which of its bins count."""
+        length = fft.next_fast_len(len(self), real=True)
+        slow = _slow_degree(self.duration) / (2.0 * self.duration)
+        width = 1.0 / (length * self.period)
+        return length, slice(math.ceil(slow / width), math.floor(self.highest_frequency / width * (1.0 + 1e-9)) + 1)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -98,9 +162,7 @@ class StretchBuilder:
     load_orders : tuple of int
         Cycles per output revolution of unknown load fluctuations.
     natural_frequency : float
-        [Hz]; together with the lines' frequencies it sets the integration step.
-    torque : float or None
-        Torque [N·m] to be used instead of the records'; None for the records'.
+        [Hz]; together with the lines' frequencies it sets the sampling rate that is needed and the integration step.
     inertial : bool
         Whether the sensor also feels gravity and the joint's own acceleration, as an IMU does.
     """
@@ -109,75 +171,99 @@ class StretchBuilder:
     harmonics: int
     load_orders: tuple[int, ...]
     natural_frequency: float
-    torque: float | None = None
     inertial: bool = False
 
-    def build(self, records: Sequence[Record]) -> Stretch:
-        """Join successive records, each of which continues the one before it."""
-        angle, speed, torque, raw = (
+    def build(self, records: Sequence[Record], torque: float | None) -> Stretch:
+        """Join successive records, each of which continues the one before it.
+
+        Parameters
+        ----------
+        records : sequence of Record
+        torque : float or None
+            Torque [N·m] to be used instead of the records'; None for the records'.
+        """
+        period = _common_period(records)
+        angle, speed, measured, raw = (
             np.concatenate([getattr(record, name) for record in records])
             for name in ("angle", "speed", "torque", "acceleration")
         )
-        period = records[0].period
-        if self.torque is not None:
-            torque = np.full(angle.size, self.torque)
-        used = np.isfinite(raw)
-        used[used] = ~outliers(raw[used])
-        steps = self._substeps(speed, period)
-        places = np.arange((angle.size - 1) * steps) / steps
-        gauss = np.stack([places + c / steps for c in GAUSS_OFFSETS])
-        nodes = np.append(places, float(angle.size - 1))
+        top_speed = float(np.abs(speed).max())
+        line = (self.harmonics * self.reducer.output_orders.flexspline + _SIDE_ORDERS) * top_speed / math.tau
+        signal = condition(raw, period, line, _FREQUENCY_MARGIN * self.natural_frequency)
+        places = signal.first + signal.factor * np.arange(signal.values.size)
+        angle, speed, measured = angle[places], speed[places], measured[places]
+        step = period * signal.factor
+        steps = self._substeps(line, step)
+        nodes = np.append(np.arange((angle.size - 1) * steps) / steps, angle.size - 1.0)
+        gauss = np.stack([nodes[:-1] + c / steps for c in GAUSS_OFFSETS])
+        if torque is not None:
+            measured = np.full(angle.size, torque)
         return Stretch(
-            start=records[0].start,
-            period=period,
-            acceleration=np.where(used, raw, 0.0),
-            used=used,
+            start=records[0].start + signal.first * period,
+            period=step,
+            acceleration=signal.values,
+            used=signal.used,
             angle=angle,
             speed=speed,
             substeps=steps,
-            at_steps=self._path(_hermite(angle, speed * period, nodes), _linear(torque, nodes)),
-            at_gauss=self._path(_hermite(angle, speed * period, gauss), _linear(torque, gauss)),
-            slow=self._slow(angle, speed, used, period),
+            at_steps=self._path(angle, speed, step, measured, nodes),
+            at_gauss=self._path(angle, speed, step, measured, gauss),
+            slow=self._slow(angle, speed, signal.used, step),
+            highest_frequency=signal.highest_frequency,
+            raw_samples=int(np.isfinite(raw).sum()),
+            outliers=signal.outliers,
         )
 
-    def _substeps(self, speed: FloatArray, period: float) -> int:
-        fastest = self.harmonics * self.reducer.output_orders.flexspline * float(np.abs(speed).max())
-        phase = max(math.tau * self.natural_frequency * 1.15, 0.7 * fastest) * period
-        return max(1, math.ceil(phase / LARGEST_PHASE_STEP))
+    def _substeps(self, line: float, step: float) -> int:
+        fastest = math.tau * max(_FREQUENCY_MARGIN * self.natural_frequency, 0.7 * line)
+        return max(1, math.ceil(fastest * step / LARGEST_PHASE_STEP))
 
-    def _path(self, angle: FloatArray, torque: FloatArray) -> Path:
-        lines = np.empty((*angle.shape, 4 * self.harmonics))
-        for place, order in enumerate(self.reducer.output_orders):
-            unit = np.exp(1j * order * angle)
+    def _path(self, angle: FloatArray, speed: FloatArray, step: float, torque: FloatArray, places: FloatArray) -> Path:
+        q = _hermite(angle, speed * step, places)
+        lines = np.empty((*q.shape, 4 * self.harmonics))
+        rates = np.empty(4 * self.harmonics)
+        for spline, order in enumerate(self.reducer.output_orders):
+            unit = np.exp(1j * order * q)
             power = unit
             for k in range(self.harmonics):
-                lines[..., 2 * self.harmonics * place + k] = power.real
-                lines[..., 2 * self.harmonics * place + self.harmonics + k] = -power.imag
+                real = 2 * self.harmonics * spline + k
+                lines[..., real], rates[real] = power.real, (k + 1) * order
+                lines[..., real + self.harmonics], rates[real + self.harmonics] = -power.imag, (k + 1) * order
                 power = power * unit
-        phases = np.multiply.outer(angle, np.asarray(self.load_orders, dtype=np.float64))
-        loads = np.concatenate([np.cos(phases), -np.sin(phases)], axis=-1)
-        return Path(lines=lines, loads=loads, torque=torque)
+        phases = np.multiply.outer(q, np.asarray(self.load_orders, dtype=np.float64))
+        return Path(
+            lines=lines,
+            rates=rates,
+            loads=np.concatenate([np.cos(phases), -np.sin(phases)], axis=-1),
+            torque=_linear(torque, places),
+            speed=_linear(speed, places),
+        )
 
     def _slow(self, angle: FloatArray, speed: FloatArray, used: BoolArray, period: float) -> FloatArray:
-        degree = 3 + math.ceil(2.0 * angle.size * period)
+        """Directions below about 1 Hz, and for an inertial sensor gravity and the joint's own acceleration."""
+        degree = _slow_degree(angle.size * period)
         columns = np.polynomial.legendre.legvander(np.linspace(-1.0, 1.0, angle.size), degree)
         if self.inertial:
             own = np.stack([np.cos(angle), np.sin(angle), np.gradient(speed, period)], axis=1)
-            columns = np.concatenate([columns, own / (np.linalg.norm(own, axis=0) + 1e-12)], axis=1)
+            columns = np.concatenate([columns, own], axis=1)
         columns = columns * used[:, None]
-        left, sizes, _ = np.linalg.svd(columns / (np.linalg.norm(columns, axis=0) + 1e-12), full_matrices=False)
-        return np.ascontiguousarray(left[:, sizes > 1e-6 * sizes[0]])
+        columns /= np.linalg.norm(columns, axis=0) + 1e-300
+        squares, directions = np.linalg.eigh(columns.T @ columns)
+        kept = squares > 1e-10 * squares[-1]
+        return np.asarray(columns @ (directions[:, kept] / np.sqrt(squares[kept])))
 
 
-def outliers(values: FloatArray) -> BoolArray:
-    """Mark samples that stick out of their neighbours: more than any smooth vibration does, however it swells."""
-    if values.size < 16:
-        return np.zeros(values.shape, dtype=np.bool_)
-    middle = median_filter(values, 5, mode="nearest")
-    difference = np.abs(values - middle)
-    limit = OUTLIER * 1.4826 * float(np.median(difference))
-    local = median_filter(np.abs(values), 9, mode="nearest")
-    return np.asarray((difference > limit) & (difference > 2.0 * local))
+def _slow_degree(duration: float) -> int:
+    """Degree of the polynomial in time [s] that takes off what is slower than about 1 Hz."""
+    return 3 + math.ceil(2.0 * duration)
+
+
+def _common_period(records: Sequence[Record]) -> float:
+    """Mean sample period of successive records, each of which has its own estimate of it."""
+    first, last = records[0], records[-1]
+    if len(records) == 1:
+        return first.period
+    return (last.start - first.start) / sum(len(record) for record in records[:-1])
 
 
 def _hermite(values: FloatArray, slopes: FloatArray, places: FloatArray) -> FloatArray:
@@ -185,8 +271,8 @@ def _hermite(values: FloatArray, slopes: FloatArray, places: FloatArray) -> Floa
     left = np.minimum(places.astype(np.intp), values.size - 2)
     u = places - left
     rise = values[left + 1] - values[left]
-    a, b = slopes[left] - rise, rise - slopes[left + 1]
-    return np.asarray(values[left] + u * (rise + (1.0 - u) * (a * (1.0 - u) + b * u)))
+    first, last = slopes[left] - rise, rise - slopes[left + 1]
+    return np.asarray(values[left] + u * (rise + (1.0 - u) * (first * (1.0 - u) + last * u)))
 
 
 def _linear(values: FloatArray, places: FloatArray) -> FloatArray:

@@ -18,7 +18,8 @@ class Unknowns:
 
     In this order: real parts of the circular spline's β phasors (one a harmonic), their imaginary parts, the same of
     the flexspline, real parts of the load phasors (one an order; in units of the reference torque), their imaginary
-    parts, the logarithms of natural frequency and damping ratio relative to the given ones.
+    parts; then the logarithms of natural frequency, damping ratio and torque relative to the given ones, and the time
+    [s] by which the motion's stamps lag behind the vibration's.
 
     Attributes
     ----------
@@ -29,7 +30,7 @@ class Unknowns:
     """
 
     harmonics: int
-    load_orders: tuple[int, ...] = (2,)
+    load_orders: tuple[int, ...]
 
     @property
     def circular_spline(self) -> slice:
@@ -62,13 +63,30 @@ class Unknowns:
         return self.frequency + 1
 
     @property
-    def size(self) -> int:
-        """Number of unknowns."""
+    def torque(self) -> int:
+        """Place of ln(torque / given torque)."""
         return self.frequency + 2
 
+    @property
+    def delay(self) -> int:
+        """Place of the delay [s]."""
+        return self.frequency + 3
+
+    @property
+    def size(self) -> int:
+        """Number of unknowns."""
+        return self.frequency + 4
+
     def zero(self) -> FloatArray:
-        """Return the vector of a healthy reducer with the given dynamics."""
+        """Return the vector of a healthy reducer with all that is given taken as right."""
         return np.zeros(self.size)
+
+    def mask(self, *places: int | slice) -> npt.NDArray[np.bool_]:
+        """Mark some places, shape (unknowns,)."""
+        mask = np.zeros(self.size, dtype=np.bool_)
+        for place in places:
+            mask[place] = True
+        return mask
 
     def phasors(self, values: FloatArray, part: slice) -> ComplexArray:
         """Complex phasors of one of the parts, shape (harmonics,) or (load orders,)."""

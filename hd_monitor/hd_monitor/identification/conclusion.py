@@ -1,0 +1,139 @@
+"""From the state of an estimation to the result that diagnosis reads."""
+
+import math
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from ..model.parameters import ParametricModel, StiffnessSeries, Torque
+from ..reducer import LinePair
+from ..settings import JointSettings
+from .coverage import Coverage
+from .indexes import stiffness_indexes
+from .knowledge import Knowledge
+from .linearisation import Predictor
+from .lines import measure_lines
+from .margin import instability_speed
+from .misfit import LineResidual
+from .noise_floor import NoiseFloor
+from .normal_equations import Evidence
+from .refinement import Score
+from .result import Identification
+from .scrutiny import Scrutiny
+from .stretch import Stretch
+from .unknowns import Unknowns
+
+FloatArray = npt.NDArray[np.float64]
+BoolArray = npt.NDArray[np.bool_]
+
+WELL_KNOWN = 0.02
+"""Standard deviation of the indexes over the larger of index and warn limit that satisfies."""
+
+_CHANGED = 0.03  # of the phasors, relative to the larger index, from which the instability speed is computed anew
+
+
+class Conclusions:
+    """Draws conclusions from the state of an estimation.
+
+    Parameters
+    ----------
+    settings : JointSettings
+    unknowns : Unknowns
+    """
+
+    def __init__(self, settings: JointSettings, unknowns: Unknowns) -> None:
+        self._settings = settings
+        self._unknowns = unknowns
+        self._warn: float = settings["diagnosis.warn_index"]
+        self._scrutiny = Scrutiny(settings)
+        self._margin_of = np.full(unknowns.size, math.nan)
+        self._margin = math.inf
+
+    def well_known(self, result: Identification) -> bool:
+        """Whether an even smaller uncertainty would be of no interest."""
+        return not result.blockers and max(result.index_std) < WELL_KNOWN * max(self._warn, *result.index)
+
+    def conclude(
+        self,
+        *,
+        predictor: Predictor,
+        values: FloatArray,
+        active: BoolArray,
+        knowledge: Knowledge,
+        scores: Mapping[int, Score],
+        misfit: LineResidual,
+        coverage: Coverage,
+        recent: Sequence[Stretch],
+        evidence: Sequence[Evidence],
+        floor: NoiseFloor,
+        relative: bool,
+    ) -> Identification:
+        """Pack the result."""
+        u = self._unknowns
+        inflation = misfit.inflation(coverage.span)
+        covariance = inflation * knowledge.covariance(active)
+        indexes = stiffness_indexes(u, values, covariance)
+        dynamics = u.dynamics(predictor.given, values)
+        loads = u.phasors(values, u.load)
+        reference = predictor.reference_torque
+        strongest = int(np.argmax(np.abs(loads)))
+        load_std = math.sqrt(covariance[u.load, u.load].diagonal().reshape(2, -1).sum(axis=0)[strongest] / 2.0)
+        snr = _signal_to_noise(evidence)
+        findings = self._scrutiny.examine(
+            unknowns=u,
+            values=values,
+            indexes=indexes,
+            scores=scores,
+            active=active,
+            inflation=inflation,
+            coverage=coverage,
+            given=predictor.given,
+            relative=relative,
+        )
+        return Identification(
+            circular_spline=u.phasors(values, u.circular_spline),
+            flexspline=u.phasors(values, u.flexspline),
+            index=indexes.index,
+            index_std=indexes.std,
+            index_correlation=indexes.correlation,
+            relative=relative,
+            lines=measure_lines(recent, self._settings.reducer, u.harmonics, floor),
+            travel=coverage.span,
+            samples=coverage.samples,
+            signal_to_noise=snr,
+            misfit=misfit.misfit,
+            natural_frequency=dynamics.natural_frequency,
+            natural_frequency_std=dynamics.natural_frequency * math.sqrt(covariance[u.frequency, u.frequency]),
+            damping_ratio=dynamics.damping_ratio,
+            damping_ratio_std=dynamics.damping_ratio * math.sqrt(covariance[u.damping, u.damping]),
+            load_fluctuation=reference * float(abs(loads[strongest])),
+            load_fluctuation_std=reference * load_std,
+            instability_speed=self._instability_speed(predictor, values, indexes.index),
+            doubts=findings.doubts,
+            blockers=findings.blockers,
+        )
+
+    def _instability_speed(self, predictor: Predictor, values: FloatArray, index: LinePair) -> float:
+        """Instability speed, computed anew only if the unknowns behind it have changed."""
+        change = np.abs(values - self._margin_of)[: self._unknowns.load.start].max()
+        if not change <= _CHANGED * max(*index, self._warn):
+            u = self._unknowns
+            self._margin_of = values
+            self._margin = instability_speed(
+                ParametricModel(
+                    reducer=self._settings.reducer,
+                    dynamics=u.dynamics(predictor.given, values),
+                    circular_spline=StiffnessSeries.from_phasors(u.phasors(values, u.circular_spline)),
+                    flexspline=StiffnessSeries.from_phasors(u.phasors(values, u.flexspline)),
+                    torque=Torque(),
+                )
+            )
+        return self._margin
+
+
+def _signal_to_noise(evidence: Sequence[Evidence]) -> float:
+    """Power of the predicted vibration over that of the residual [dB], in the band that was fitted."""
+    explained = sum(float(np.sum(e.stretch.transform(e.linearisation.predicted[:, None]) ** 2)) for e in evidence)
+    residual = sum(float(np.sum(e.residual**2)) for e in evidence)
+    return 10.0 * math.log10(max(explained, 1e-300) / max(residual, 1e-300))

@@ -1,0 +1,297 @@
+"""The state of an estimation: evidence gathered so far, the best values of the unknowns, and when to look again."""
+
+import cmath
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from ..acquisition.record import Record
+from ..settings import JointSettings
+from .conclusion import Conclusions
+from .coverage import Coverage
+from .gauss_newton import Fit, Problem
+from .knowledge import Knowledge
+from .linearisation import Predictor
+from .misfit import LineResidual
+from .noise_floor import NoiseFloor
+from .refinement import Score, score
+from .result import Identification
+from .stretch import Stretch, StretchBuilder
+from .unknowns import Unknowns
+
+FloatArray = npt.NDArray[np.float64]
+
+LOAD_ORDERS = (1, 2)
+"""Cycles per output revolution of unknown load fluctuations: gravity, and the one that mimics the other spline."""
+
+WINDOW = 16.0
+"""Motion [s] that is fitted as a whole with every new stretch; from then on each stretch is used once."""
+
+CONTRADICTION = 4.5
+"""Standard deviations by which data must contradict what was given before it is estimated, too."""
+
+FREQUENCY_KNOWN = 0.005
+"""Standard deviation of ln fn below which data know it better than the parameters do."""
+
+_SPEED_VARIES = 0.05  # relative standard deviation of the speed
+_START_LOADS = tuple(1.5 * cmath.exp(0.5j * math.pi * quarter) for quarter in range(4))
+_START_FREQUENCIES = (-0.12, -0.08, -0.04, 0.04, 0.08, 0.12)  # ln fn relative to the given one
+_SECOND_LOOK = 3.5  # s of motion at which the exploration made on the first second or so is repeated
+_POOR = 1.5  # inflation of the variances, by what the fit leaves at the lines, from which other solutions are sought
+_NOMINAL_INDEX = 0.05  # of the larger spline, where an unknown torque leaves the scale open
+_ROUNDS = 8
+_EXPLORED = 6.0  # s of the newest motion on which other solutions are tried
+
+
+class Estimation:
+    """Estimates the unknowns of one reducer from stretches.
+
+    Parameters
+    ----------
+    settings : JointSettings
+
+    Attributes
+    ----------
+    result : Identification or None
+        Newest result.
+    seconds : float
+        Motion used [s].
+    """
+
+    def __init__(self, settings: JointSettings) -> None:
+        self._given = settings.dynamics
+        self._reducer = settings.reducer
+        self._refine: bool = settings["dynamics.refine"]
+        self._memory: float = settings["analysis.memory"]
+        self._load_torque: float = settings["load.torque"] if settings["load.source"] in ("auto", "parameter") else 0.0
+        self._unknowns = u = Unknowns(harmonics=settings["analysis.harmonics"], load_orders=LOAD_ORDERS)
+        self._builder = StretchBuilder(
+            reducer=self._reducer,
+            harmonics=u.harmonics,
+            load_orders=LOAD_ORDERS,
+            natural_frequency=self._given.natural_frequency,
+            inertial=settings["input.source"] == "imu",
+        )
+        self._std = _given_std(u)
+        self._prior = Knowledge.gaussian(self._std)
+        self._learnt = Knowledge.none(u.size)
+        self._predictor: Predictor | None = None
+        self._nominal_torque: float | None = None
+        self._values = u.zero()
+        self._active = u.mask(u.stiffness, u.load)
+        self._recent: list[Stretch] = []
+        self._settled = False
+        self._floor: NoiseFloor | None = None
+        self._line_residual = LineResidual.empty(u.harmonics)
+        self._explored = 0.0
+        self._coverage = Coverage()
+        self._conclusions = Conclusions(settings, u)
+        self.result: Identification | None = None
+        self.seconds = 0.0
+
+    @property
+    def well_known(self) -> bool:
+        """Whether more data would tell nothing more of interest."""
+        return self._settled and self.result is not None and self._conclusions.well_known(self.result)
+
+    def take(self, records: Sequence[Record]) -> None:
+        """Use a stretch, given as records that follow each other."""
+        stretch = self._build(records)
+        if np.count_nonzero(stretch.used) < 4 * self._unknowns.size:
+            return
+        self.seconds += stretch.duration
+        self._coverage = self._coverage.plus(stretch)
+        self._recent.append(stretch)
+        while sum(s.duration for s in self._recent[1:]) >= WINDOW:
+            self._recent.pop(0)
+        fit = self._fit()
+        floor, residual = self._rest(fit)
+        if residual.inflation(self._coverage.span) > _POOR and self.seconds > 2.0 + 1.5 * self._explored:
+            fit = self._look_elsewhere(fit)
+            floor, residual = self._rest(fit)
+        questioned = self._question(fit)
+        if questioned is not fit:
+            fit = questioned
+            floor, residual = self._rest(fit)
+        self._values, self._floor, self._line_residual = fit.values, floor, residual
+        self._conclude(fit)
+        if self._settled or sum(s.duration for s in self._recent) >= WINDOW:
+            self._learn(fit)
+
+    # Preparation ---------------------------------------------------------------------------------------------------
+
+    def _build(self, records: Sequence[Record]) -> Stretch:
+        """Make a stretch; where nobody knows the torque, a nominal one stands for it."""
+        if np.isfinite(records[0].torque).all():
+            return self._builder.build(records, None)
+        if self._load_torque:
+            return self._builder.build(records, self._load_torque)
+        if self._nominal_torque is None:
+            unit = self._given.stiffness * 1e-3  # a wind-up of 1 mrad
+            u, stretch = self._unknowns, self._builder.build(records, unit)
+            problem = Problem(
+                stretches=[stretch],
+                predictor=Predictor(unknowns=u, given=self._given, reference_torque=unit),
+                prior=self._prior,
+                floor=_signal_level([stretch]),
+                active=u.mask(u.stiffness),
+            )
+            step = problem.at(u.zero()).step
+            size = max(float(np.linalg.norm(step[part])) for part in (u.circular_spline, u.flexspline))
+            self._nominal_torque = unit * max(size, 1e-6) / _NOMINAL_INDEX
+            self._active |= u.mask(u.torque)
+        return self._builder.build(records, self._nominal_torque)
+
+    def _problem(self, stretches: Sequence[Stretch], prior: Knowledge) -> Problem:
+        if self._predictor is None:
+            torque = np.concatenate([s.at_steps.torque for s in stretches])
+            level = max(float(np.sqrt(np.mean(torque**2))), 0.1 * abs(self._load_torque), 1e-9 * self._given.stiffness)
+            self._predictor = Predictor(unknowns=self._unknowns, given=self._given, reference_torque=level)
+        return Problem(
+            stretches=stretches,
+            predictor=self._predictor,
+            prior=prior,
+            floor=_signal_level(stretches) if self._floor is None else self._floor,
+            active=self._active,
+        )
+
+    # Fitting -------------------------------------------------------------------------------------------------------
+
+    def _fit(self) -> Fit:
+        """Fit the newest stretch on top of what is learnt, or all recent ones as long as nothing has been learnt."""
+        if self._settled:
+            return self._problem(self._recent[-1:], self._prior + self._learnt).solve(self._values, rounds=2)
+        problem = self._problem(self._recent, self._prior)
+        if self._floor is None or (self._explored < _SECOND_LOOK <= self.seconds):
+            return self._explore(problem, self._load_starts(known=self._floor is not None))
+        return problem.solve(self._values, rounds=_ROUNDS)
+
+    def _load_starts(self, *, known: bool) -> list[FloatArray]:
+        """Starts for the load, whose phase has local minima; and the best values so far, if any are known."""
+        starts = [self._values] if known else []
+        for load in (0.0, *_START_LOADS):
+            start = self._unknowns.zero()
+            start[self._unknowns.frequency] = self._values[self._unknowns.frequency]
+            start[self._unknowns.load] = [0.0, load.real, 0.0, load.imag]
+            starts.append(start)
+        return starts
+
+    def _explore(self, problem: Problem, starts: Sequence[FloatArray]) -> Fit:
+        """Solve from several starts on the newest data, then on all."""
+        self._explored = self.seconds
+        newest = [problem.stretches[-1]]
+        for stretch in problem.stretches[-2::-1]:
+            if sum(s.duration for s in newest) + stretch.duration > _EXPLORED:
+                break
+            newest.append(stretch)
+        small = replace(problem, stretches=newest, floor=_signal_level(newest))
+        small, best = small.explore(starts, rounds=_ROUNDS)
+        fits = [
+            replace(problem, floor=small.floor).solve(values, rounds=_ROUNDS) for values in (best.values, starts[0])
+        ]
+        fit = min(fits, key=lambda f: f.cost)
+        return replace(problem, floor=fit.floor).solve(fit.values, rounds=_ROUNDS)
+
+    def _look_elsewhere(self, fit: Fit) -> Fit:
+        """Try other solutions on the recent stretches: the fit leaves more at the lines than noise could."""
+        self._values = fit.values
+        starts = self._load_starts(known=True)
+        problem = self._problem(self._recent, self._prior)
+        if self._refine:
+            self._active |= self._unknowns.mask(self._unknowns.frequency, self._unknowns.damping)
+            problem = replace(problem, active=self._active)
+            for shift in _START_FREQUENCIES:
+                start = self._unknowns.zero()
+                start[self._unknowns.frequency] = shift
+                starts.append(start)
+        self._settled = False
+        self._learnt = Knowledge.none(self._unknowns.size)
+        return self._explore(problem, starts)
+
+    def _question(self, fit: Fit) -> Fit:
+        """Ask whether what was given agrees with the data, and estimate along what does not."""
+        u = self._unknowns
+        candidates = [u.delay, u.frequency, u.damping] if self._refine else [u.delay]
+        for _ in candidates:
+            knowledge = (self._prior + self._learnt).plus(fit.equations, fit.values)
+            waiting = [place for place in candidates if not self._active[place]]
+            scores = {place: self._score(place, knowledge, fit.values) for place in waiting}
+            wrong = [place for place in waiting if scores[place].significance > CONTRADICTION]
+            if u.frequency in waiting and self._coverage.speed_varies and scores[u.frequency].std < FREQUENCY_KNOWN:
+                wrong.append(u.frequency)
+            if not wrong:
+                break
+            worst = max(wrong, key=lambda place: scores[place].significance)
+            self._active |= u.mask(worst)
+            stretches = [item.stretch for item in fit.evidence]
+            fit = self._problem(stretches, self._prior + self._learnt).solve(fit.values, rounds=_ROUNDS)
+        return fit
+
+    def _score(self, place: int, knowledge: Knowledge, values: FloatArray) -> Score:
+        return score(place, knowledge, values, self._active, float(self._std[place]))
+
+    # Learning ------------------------------------------------------------------------------------------------------
+
+    def _rest(self, fit: Fit) -> tuple[NoiseFloor, LineResidual]:
+        """Noise floor, and what is left at the lines, with a fit's part in both."""
+        if self._settled and self._floor is not None:
+            floor, rest = self._floor + fit.floor, self._line_residual
+        else:
+            floor, rest = fit.floor, LineResidual.empty(self._unknowns.harmonics)
+        for item in fit.evidence:
+            rest = rest.plus(item, floor, self._reducer)
+        return floor, rest
+
+    def _learn(self, fit: Fit) -> None:
+        """Add the evidence of a fit to what is learnt."""
+        self._settled = True
+        self._learnt = self._learnt.plus(fit.equations, fit.values)
+        self.age(sum(item.stretch.duration for item in fit.evidence))
+
+    def age(self, duration: float) -> None:
+        """Let `duration` [s] of motion pass, over which evidence fades."""
+        keep = math.exp(-duration / self._memory)
+        self._learnt = self._learnt.faded(keep)
+        self._line_residual = self._line_residual.faded(keep)
+        if self._floor is not None:
+            self._floor = self._floor.faded(keep)
+
+    def _conclude(self, fit: Fit) -> None:
+        u = self._unknowns
+        knowledge = (self._prior + self._learnt).plus(fit.equations, fit.values)
+        places = (u.frequency, u.damping, u.torque, u.delay)
+        assert self._predictor is not None
+        self.result = self._conclusions.conclude(
+            predictor=self._predictor,
+            values=fit.values,
+            active=self._active,
+            knowledge=knowledge,
+            scores={place: self._score(place, knowledge, fit.values) for place in places},
+            misfit=self._line_residual,
+            coverage=self._coverage,
+            recent=self._recent,
+            evidence=fit.evidence,
+            floor=self._floor or fit.floor,
+            relative=self._nominal_torque is not None,
+        )
+
+
+def _given_std(unknowns: Unknowns) -> FloatArray:
+    """Standard deviations of the unknowns before any data."""
+    std = np.empty(unknowns.size)
+    std[unknowns.stiffness] = 0.3
+    std[unknowns.load] = 2.0
+    std[unknowns.frequency] = 0.1
+    std[unknowns.damping] = 0.5
+    std[unknowns.torque] = 1.5
+    std[unknowns.delay] = 0.01
+    return std
+
+
+def _signal_level(stretches: Sequence[Stretch]) -> NoiseFloor:
+    """White noise as strong as the whole signal: where a fit starts."""
+    densities = [2.0 * s.period * float(np.mean(s.transform(s.acceleration[:, None]) ** 2)) / s.fill for s in stretches]
+    return NoiseFloor.white(max(float(np.mean(densities)), 1e-30))

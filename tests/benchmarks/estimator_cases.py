@@ -1,0 +1,314 @@
+"""Random test cases with a known truth: a defect, a motion, a load, a sensor and its faults.
+
+The simulation integrates at a step of its own, several times finer than the estimator's, takes the true motion where
+the estimator sees joint states interpolated, and adds what the estimator does not model (speed ripple, motor ripple,
+coloured noise, spikes, loss).
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from hd_monitor.acquisition.motion import MotionTrack
+from hd_monitor.acquisition.record import Record
+from hd_monitor.diagnosis.verdict import Component
+from hd_monitor.model import (
+    Dynamics,
+    Oscillator,
+    ParametricModel,
+    StiffnessSeries,
+    Torque,
+    gauss_times,
+    growth_rate,
+)
+from hd_monitor.reducer import LinePair, Mount, Reducer
+from hd_monitor.settings import JointSettings
+from scipy.interpolate import CubicHermiteSpline
+from scipy.signal import lfilter
+
+FloatArray = npt.NDArray[np.float64]
+
+WARN = 0.05
+BOTH_RATIO = 0.87
+TEETH = ((160, 162), (160, 162), (200, 202), (100, 102), (120, 122))
+HARMONICS = 3
+FINE = 2e-4  # s, longest step of the simulation
+MOTIONS = ("dwell", "ripple", "strokes", "run_up", "steps")
+"""Constant speed; constant with speed ripple; there and back; a slow run-up; a staircase of speeds."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Case:
+    """One random case.
+
+    Attributes
+    ----------
+    model : ParametricModel
+        The truth. Its torque is the one that acts; `measured` says whether joint states tell it.
+    motion : str
+        One of `MOTIONS`.
+    speed : float
+        Wave-generator speed [rpm]: of the dwell, the strokes, the middle of the run-up.
+    span : float
+        Arc of the strokes [rad].
+    duration : float
+        [s]
+    snr : float
+        [dB]
+    colour : str
+        ``white``, ``red`` or ``hum`` (a machine's tones beside white noise).
+    spikes, lost : float
+        Parts of the samples that are spikes, or missing.
+    measured : bool
+        Whether the torque is in the joint states.
+    rate : float
+        [Hz]
+    seed : int
+        Of noise and faults.
+    """
+
+    model: ParametricModel
+    motion: str
+    speed: float
+    span: float
+    duration: float
+    snr: float
+    colour: str
+    spikes: float
+    lost: float
+    measured: bool
+    rate: float
+    seed: int
+
+    @property
+    def index(self) -> LinePair:
+        """True indexes."""
+        return LinePair(self.model.circular_spline.index, self.model.flexspline.index)
+
+    @property
+    def truth(self) -> Component:
+        """Component that the rule of the interface names for the true indexes."""
+        smaller, larger = sorted(self.index)
+        if larger < WARN:
+            return Component.NONE
+        if smaller >= WARN and smaller >= BOTH_RATIO * larger:
+            return Component.BOTH
+        return Component.CIRCULAR_SPLINE if self.index.circular_spline == larger else Component.FLEXSPLINE
+
+    def settings(self, **changes: object) -> JointSettings:
+        """Return parameters as a careful user would set them."""
+        reducer, dynamics = self.model.reducer, self.model.dynamics
+        return JointSettings.from_mapping(
+            {
+                "reducer.flexspline_teeth": reducer.flexspline_teeth,
+                "reducer.circular_spline_teeth": reducer.circular_spline_teeth,
+                "reducer.mount": reducer.mount.value,
+                "dynamics.natural_frequency": dynamics.natural_frequency,
+                "dynamics.damping_ratio": dynamics.damping_ratio,
+                "dynamics.inertia": dynamics.inertia,
+                "load.torque": self.model.torque.mean,
+            }
+            | changes
+        )
+
+
+def random_case(rng: np.random.Generator, **fixed: object) -> Case:
+    """Draw a case; `fixed` replaces what is drawn."""
+    while True:
+        case = _draw(rng, fixed)
+        if not _ambiguous(case) and _stable(case):
+            return case
+
+
+def _draw(rng: np.random.Generator, fixed: dict[str, object]) -> Case:
+    z1, z2 = TEETH[rng.integers(len(TEETH))]
+    mount = Mount.CIRCULAR_SPLINE_FIXED if rng.random() < 0.5 else Mount.FLEXSPLINE_FIXED
+    reducer = Reducer(flexspline_teeth=z1, circular_spline_teeth=z2, mount=mount)
+    dynamics = Dynamics(
+        natural_frequency=55.0 if rng.random() < 0.5 else float(rng.uniform(25.0, 80.0)),
+        damping_ratio=float(rng.uniform(0.015, 0.05)),
+        inertia=float(rng.choice([0.29, 0.1, 1.0])),
+    )
+    kind = rng.choice(["healthy", "one", "both"], p=[0.2, 0.6, 0.2])
+    if kind == "healthy":
+        sizes = rng.uniform(0.0, 0.9 * WARN, 2)
+    else:
+        larger = rng.uniform(1.1 * WARN, 0.13)
+        sizes = larger * np.array([1.0, rng.uniform(0.9, 1.0) if kind == "both" else rng.uniform(0.0, 0.8)])
+        sizes = rng.permutation(sizes)
+    circular, flex = (_series(rng, float(size)) for size in sizes)
+    mean = dynamics.inertia * float(rng.uniform(15.0, 60.0))
+    load = rng.choice(["none", "order 1", "order 2"], p=[0.4, 0.2, 0.4])
+    torque = Torque(
+        mean=mean,
+        load_order=1 if load == "order 1" else 2,
+        load_fluctuation=0.0 if load == "none" else mean * float(rng.uniform(0.1, 3.0)),
+        load_phase=float(rng.uniform(0.0, math.tau)),
+    )
+    speed = float(rng.uniform(300.0, 2800.0))
+    if rng.random() < 0.4:  # on the flank of a resonance fn / k
+        line = dynamics.natural_frequency / rng.integers(1, 4) * rng.uniform(0.95, 1.05)
+        speed = float(np.clip(line * 60.0 / reducer.circular_spline_order, 200.0, 3300.0))
+    motion = str(rng.choice(MOTIONS))
+    values: dict[str, object] = {
+        "model": ParametricModel(
+            reducer=reducer, dynamics=dynamics, circular_spline=circular, flexspline=flex, torque=torque
+        ),
+        "motion": motion,
+        "speed": speed,
+        "span": math.radians(float(rng.uniform(90.0, 330.0))),
+        "duration": float(rng.choice([8.0, 12.0, 20.0])),
+        "snr": float(rng.uniform(15.0, 30.0)),
+        "colour": str(rng.choice(["white", "white", "red", "hum"])),
+        "spikes": float(rng.choice([0.0, 0.0, 0.002])),
+        "lost": float(rng.choice([0.0, 0.0, 0.01, 0.05])),
+        "measured": bool(rng.random() < 0.4),
+        "rate": 1000.0,
+        "seed": int(rng.integers(2**31)),
+    }
+    case = Case(**(values | fixed))  # type: ignore[arg-type]
+    if case.motion in ("dwell", "ripple"):
+        # at least 90° of travel, however slow
+        needed = math.pi / 2.0 / output_speed(case)
+        case = Case(**(_fields(case) | {"duration": max(case.duration, math.ceil(needed + 1.0))}))  # type: ignore[arg-type]
+    return case
+
+
+def _fields(case: Case) -> dict[str, object]:
+    return {name: getattr(case, name) for name in Case.__dataclass_fields__}
+
+
+def _series(rng: np.random.Generator, index: float) -> StiffnessSeries:
+    sizes = rng.uniform(0.3, 1.0, HARMONICS) * 0.6 ** np.arange(HARMONICS)
+    sizes *= index / np.linalg.norm(sizes)
+    return StiffnessSeries(tuple(sizes.tolist()), tuple(rng.uniform(0.0, math.tau, HARMONICS).tolist()))
+
+
+def _ambiguous(case: Case) -> bool:
+    """Whether a change of some per cent in an index would change the truth's name."""
+    smaller, larger = sorted(case.index)
+    near_limit = abs(larger / WARN - 1.0) < 0.08
+    near_both = larger >= WARN and smaller > 0.9 * WARN and abs(smaller / larger / BOTH_RATIO - 1.0) < 0.03
+    near_second = smaller / larger > BOTH_RATIO and abs(smaller / WARN - 1.0) < 0.05
+    return bool(near_limit or near_both or near_second)
+
+
+def _stable(case: Case) -> bool:
+    return all(growth_rate(case.model, rpm) < -0.5 for rpm in speeds(case))
+
+
+def speeds(case: Case) -> list[float]:
+    """Wave-generator speeds [rpm] at which the case dwells, or that it passes."""
+    return {
+        "dwell": [case.speed],
+        "ripple": [case.speed],
+        "strokes": [case.speed],
+        "run_up": np.linspace(0.6 * case.speed, 1.4 * case.speed, 7).tolist(),
+        "steps": [f * case.speed for f in (0.7, 0.85, 1.0, 1.15)],
+    }[case.motion]
+
+
+def output_speed(case: Case, rpm: float | None = None) -> float:
+    """Output speed [rad/s] at a wave-generator speed [rpm], the case's own by default."""
+    return (case.speed if rpm is None else rpm) * math.tau / 60.0 / case.model.reducer.reduction
+
+
+def _velocity(case: Case, times: FloatArray, rng: np.random.Generator) -> FloatArray:
+    """Output speed [rad/s] at `times` [s]."""
+    omega = output_speed(case)
+    sign = 1.0 if rng.random() < 0.5 else -1.0
+    if case.motion == "dwell":
+        return np.full(times.shape, sign * omega)
+    if case.motion == "ripple":
+        depth, rate = rng.uniform(0.002, 0.02), rng.uniform(0.2, 2.0)
+        return np.asarray(sign * omega * (1.0 + depth * np.sin(math.tau * rate * times + rng.uniform(0.0, 6.0))))
+    if case.motion == "strokes":
+        ramp = max(0.15, 0.05 * case.span / omega)
+        whole = case.span / omega
+        knots = np.cumsum([0.0, ramp / 2, whole, ramp, whole, ramp / 2])
+        levels = np.array([0.0, 1.0, 1.0, -1.0, -1.0, 0.0])
+        return np.asarray(sign * omega * np.interp(np.mod(times, knots[-1]), knots, levels))
+    if case.motion == "run_up":
+        return np.asarray(sign * omega * (0.6 + 0.8 * times / case.duration))
+    levels = np.array([0.7, 0.85, 1.0, 1.15])
+    place = times / case.duration * levels.size
+    step = np.minimum(place.astype(int), levels.size - 1)
+    ramp = np.clip((place - step) / 0.08, 0.0, 1.0)
+    before = levels[np.maximum(step - 1, 0)]
+    return np.asarray(sign * omega * (before + ramp * (levels[step] - before)))
+
+
+def simulate(case: Case) -> list[Record]:
+    """Simulate a case: its records of a second each, as acquisition hands them over."""
+    rng = np.random.default_rng(case.seed)
+    model, dynamics = case.model, case.model.dynamics
+    count = int(case.duration * case.rate)
+    fine = math.ceil(1.0 / case.rate / FINE)
+    step = 1.0 / case.rate / fine
+    # Motion on half steps, so that its cubic through the steps' ends is exact to the fourth order
+    times = np.arange((count + 1) * fine + 1, dtype=np.float64) * step
+    half = np.arange(2 * (times.size - 1) + 1, dtype=np.float64) * step / 2.0
+    v_half = _velocity(case, half, rng)
+    v = v_half[::2]
+    q = rng.uniform(-3.0, 3.0) + np.concatenate(
+        [[0.0], np.cumsum((v_half[:-2:2] + 4.0 * v_half[1::2] + v_half[2::2]) * step / 6.0)]
+    )
+    path = CubicHermiteSpline(times, q, v)
+    gauss = gauss_times(times)
+    q_gauss = path(gauss)
+    oscillator = Oscillator(dynamics, model.stiffness_fluctuation(q_gauss), step)
+    torque = model.torque_at(q)
+    response = oscillator.respond(
+        model.torque_at(q_gauss) / dynamics.inertia, initial=(torque[0] / dynamics.stiffness, 0.0)
+    )
+    acceleration = model.acceleration(q, response.displacement, response.velocity)
+    return _measure(case, rng, times, path, torque, acceleration[::fine][:count])
+
+
+def _measure(
+    case: Case,
+    rng: np.random.Generator,
+    times: FloatArray,
+    path: CubicHermiteSpline,
+    torque: FloatArray,
+    acceleration: FloatArray,
+) -> list[Record]:
+    sampling = np.arange(acceleration.size) / case.rate
+    level = float(np.std(acceleration)) * 10.0 ** (-case.snr / 20.0)
+    noise = rng.standard_normal(acceleration.size)
+    if case.colour == "red":
+        noise = lfilter([1.0], [1.0, -0.85], noise)
+        noise /= np.std(noise)
+    elif case.colour == "hum":
+        for frequency in rng.uniform(5.0, 400.0, 3):
+            noise = noise + 1.5 * np.cos(math.tau * frequency * sampling + rng.uniform(0.0, 6.0))
+        noise /= np.std(noise)
+    values = acceleration + level * noise
+    hit = rng.random(values.size) < case.spikes
+    values[hit] += rng.choice([-1.0, 1.0], int(hit.sum())) * rng.uniform(20.0, 200.0, int(hit.sum())) * level
+    values[rng.random(values.size) < case.lost] = np.nan
+    joint = np.arange(0.0, times[-1], 0.008)
+    rows = np.column_stack(
+        [
+            path(joint) + 2e-6 * rng.standard_normal(joint.size),
+            path(joint, 1) + 1e-4 * rng.standard_normal(joint.size),
+            np.interp(joint, times, torque) if case.measured else np.full(joint.size, np.nan),
+        ]
+    )
+    track = MotionTrack()
+    track.extend(joint, rows)
+    motion = track.at(sampling)
+    chunk = int(case.rate)
+    return [
+        Record(
+            start=float(sampling[first]),
+            period=1.0 / case.rate,
+            acceleration=values[first : first + chunk],
+            angle=motion.angle[first : first + chunk],
+            speed=motion.speed[first : first + chunk],
+            torque=motion.torque[first : first + chunk],
+            continues=first > 0,
+        )
+        for first in range(0, values.size - chunk + 1, chunk)
+    ]
