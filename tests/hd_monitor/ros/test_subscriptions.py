@@ -1,0 +1,95 @@
+"""The polled subscription: nothing reaches an executor, nothing is lost, nothing comes out of order."""
+
+from typing import Any
+
+import pytest
+from hd_monitor.adapters import Source
+from hd_monitor.cdr import decode_accel_stamped
+
+pytestmark = pytest.mark.ros
+
+SOURCE = Source("torsional_acceleration", "geometry_msgs/AccelStamped")
+
+
+def drained(peer: Any, depth: int) -> Any:
+    from hd_monitor.ros.subscriptions import DrainedSubscription
+
+    return DrainedSubscription(peer.node, SOURCE, depth=depth, reliability="reliable")
+
+
+def publish(publisher: Any, first: int, count: int) -> None:
+    from geometry_msgs.msg import AccelStamped
+
+    message = AccelStamped()
+    for number in range(first, first + count):
+        message.header.stamp.nanosec = number
+        message.accel.angular.z = float(number)
+        publisher.publish(message)
+
+
+def test_what_was_published_comes_out_in_order(peer: Any) -> None:
+    from geometry_msgs.msg import AccelStamped
+
+    subscription = drained(peer, 1000)
+    publisher = peer.publisher(AccelStamped, "torsional_acceleration")
+    publish(publisher, 0, 700)
+    received: list[bytes] = []
+
+    def complete() -> bool:
+        received.extend(subscription.drain())
+        return len(received) >= 700
+
+    peer.until(complete, "700 messages")
+    samples = decode_accel_stamped(received)
+    assert samples.stamps.tolist() == list(range(700))
+    assert samples.angular[:, 2].tolist() == [float(number) for number in range(700)]
+    assert subscription.drain() == []
+
+
+def test_a_queue_that_runs_over_keeps_the_newest(peer: Any) -> None:
+    from geometry_msgs.msg import AccelStamped
+
+    subscription = drained(peer, 20)
+    publisher = peer.publisher(AccelStamped, "torsional_acceleration")
+    publish(publisher, 0, 100)
+    received: list[bytes] = []
+
+    def complete() -> bool:
+        received.extend(subscription.drain())
+        return bool(received) and decode_accel_stamped(received[-1:]).stamps[0] == 99
+
+    peer.until(complete, "the newest message")
+    stamps = decode_accel_stamped(received).stamps.tolist()
+    assert stamps == sorted(set(stamps))
+
+
+def test_the_executor_never_sees_it(peer: Any) -> None:
+    from hd_monitor.ros.subscriptions import PolledGroup
+
+    subscription = drained(peer, 10)
+    entity = next(s for s in peer.node.subscriptions if s.topic_name == subscription.topic)
+    assert isinstance(entity.callback_group, PolledGroup)
+    assert not peer.executor.can_execute(entity)
+
+
+def test_it_leaves_the_topic(peer: Any) -> None:
+    from geometry_msgs.msg import AccelStamped
+
+    subscription = drained(peer, 10)
+    publisher = peer.publisher(AccelStamped, "torsional_acceleration")
+    subscription.close()
+    peer.until(lambda: not publisher.get_subscription_count(), "the end of the subscription")
+
+
+def test_a_silent_publisher_is_named(peer: Any) -> None:
+    from geometry_msgs.msg import AccelStamped
+
+    subscription = drained(peer, 10)
+    assert subscription.explain_silence() == (
+        "nothing publishes /torsional_acceleration (geometry_msgs/msg/AccelStamped)"
+    )
+    peer.publisher(AccelStamped, "torsional_acceleration")
+    peer.until(
+        lambda: subscription.explain_silence() == "/test_peer publishes /torsional_acceleration but sends nothing",
+        "the publisher in the graph",
+    )
