@@ -15,7 +15,7 @@ FILES = sorted(CONFIG.glob("rig*.yaml"))
 def load(file):
     yaml = pytest.importorskip("yaml", reason="reading parameter files needs the extra 'offline'")
     (node,) = yaml.safe_load(file.read_text(encoding="utf-8")).items()
-    assert node[0] == "hd_sim_node"
+    assert node[0] == "/**/hd_sim_node"
     return RigSettings.from_mapping(pick(node[1]["ros__parameters"], NODE_PARAMETERS))
 
 
