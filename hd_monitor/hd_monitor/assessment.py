@@ -3,6 +3,8 @@
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
 from .acquisition.quality import Quality
 from .acquisition.record import JointSamples, Record
 from .analysis.rms_curve import RmsCurve
@@ -11,6 +13,8 @@ from .analysis.zoom import ZoomSpectrum, zoom_spectrum
 from .diagnosis.verdict import Verdict
 from .identification.result import Identification
 from .reducer import Reducer
+
+_FEWEST_SAMPLES = 16  # of a stretch worth a picture
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -77,7 +81,7 @@ class Assessment:
     def zoom(self) -> ZoomSpectrum | None:
         """Zoom spectrum of θ'' around the strongest pair at the present speed; computed at each call."""
         steady = self.steady
-        if steady is None:
+        if steady is None or int(np.isfinite(steady.acceleration).sum()) < _FEWEST_SAMPLES:
             return None
         rpm = abs(float(steady.speed.mean())) * self.reducer.reduction * 60.0 / math.tau
         k = self.strongest_pair

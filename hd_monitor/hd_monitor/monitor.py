@@ -22,7 +22,7 @@ from .timeline import Timeline, Window
 
 FloatArray = npt.NDArray[np.float64]
 
-VIBRATION = "the vibration signal"
+VIBRATION = "vibration signal"
 MOTION = "joint states"
 _SLOW_DEGREE = 5  # of the polynomial that takes gravity and rigid motion off a second of an IMU's signal
 
@@ -68,6 +68,7 @@ class Monitor:
         self._recorder = Recorder(settings)
         self._sequence: int | None = None
         self._seen: dict[str, int] = {}
+        self._useful = 0
         self._latest: Assessment | None = None
         self._begin_evidence()
 
@@ -167,11 +168,14 @@ class Monitor:
         if window.cut:
             self._recorder.cut()
             self._seen = dict.fromkeys(self._seen, window.start)
+            self._useful = window.start
         vibration, motion = self._vibration.take(end), self._motion.take(end)
         for name, samples in ((VIBRATION, vibration), (MOTION, motion)):
             if samples.stamps.size:
                 self._seen[name] = int(samples.stamps.max())
         harvest = self._recorder.harvest(vibration, motion, self._motion.peek_first(), epoch, end)
+        if self.settings.sensorless or np.isfinite(harvest.vibration).any():
+            self._useful = end
         evidence = self._gather(harvest)
         lost = [name for name in self._needed_names() if self._is_lost(name, end)]
         if lost:
@@ -179,6 +183,8 @@ class Monitor:
                 f"No {' and no '.join(lost)} for {self._timeout / NANOSECONDS:g} s or more while other input goes on: "
                 "check the publisher, the topic's name and the stamps"
             )
+        elif end - self._useful >= self._timeout:
+            verdict = self._unusable()
         else:
             verdict = self._judge.judge(evidence, self._missing(harvest))
         speed, rms = self._speed(harvest), self._level(harvest.vibration)
@@ -209,6 +215,16 @@ class Monitor:
             component=Component.UNDETERMINED, level=Level.ERROR, fault_code=FaultCode.INPUT_LOST, reason=reason
         )
 
+    def _unusable(self) -> Verdict:
+        fault = self._recorder.quality.last_fault
+        return Verdict(
+            component=Component.UNDETERMINED,
+            level=Level.ERROR,
+            fault_code=FaultCode.INPUT_INVALID,
+            reason=f"The vibration signal comes, but for {self._timeout / NANOSECONDS:g} s or more no sample could be "
+            f"used: {fault}; check the sensor",
+        )
+
     def _missing(self, harvest: Harvest) -> str:
         """Say why there is no evidence yet."""
         absent = [name for name in self._needed_names() if name not in self._seen]
@@ -216,7 +232,9 @@ class Monitor:
             return f"No {' and no '.join(absent)} so far"
         if not self.settings.sensorless and not harvest.records:
             fault = self._recorder.quality.last_fault
-            return "No stretch of vibration with known motion in the last period" + (f": {fault}" if fault else "")
+            return "No vibration with known motion in the last period" + (f": {fault}" if fault else "")
+        if not self.settings.sensorless and not np.isfinite(harvest.vibration).any():
+            return f"No usable vibration sample in the last period: {self._recorder.quality.last_fault}"
         speed = self._speed(harvest)
         if not speed >= self.settings["analysis.minimum_speed"]:
             return "The joint has not turned enough yet: the lines show in motion only"

@@ -205,6 +205,19 @@ def test_a_stuck_sensor_gives_no_verdict(recording: Recording) -> None:
     assessment = latest(run(recording, blocks))
     assert assessment.quality.stuck == assessment.quality.samples
     assert assessment.verdict.component is Component.UNDETERMINED
+    assert assessment.verdict.fault_code is FaultCode.INPUT_INVALID
+    assert "did not change" in assessment.verdict.reason
+    assert assessment.zoom is None
+
+
+def test_a_sensor_that_breaks_later_is_not_covered_by_old_evidence(recording: Recording) -> None:
+    blocks = [
+        block._replace(samples=np.full(BLOCK, np.nan)) if block.sequence > 60 else block for block in recording.blocks()
+    ]
+    assessment = latest(run(recording, blocks))
+    assert assessment.identification is not None
+    assert assessment.verdict.fault_code is FaultCode.INPUT_INVALID
+    assert "not finite" in assessment.verdict.reason
 
 
 def test_a_clock_set_back_loses_no_evidence(recording: Recording) -> None:
