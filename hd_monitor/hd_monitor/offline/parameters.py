@@ -10,7 +10,7 @@ import yaml
 from ..errors import ParameterError
 from ..parameter import flatten
 
-NODE = "hd_monitor"
+NODE = "hd_monitor_node"
 """Name of the monitor node, if nobody has renamed it."""
 
 _PARAMETERS = "ros__parameters"
@@ -35,7 +35,7 @@ def load_parameters(path: Path, node: str | None = None) -> dict[str, Any]:
         A ROS parameter file (nodes, wildcards and namespaces above ``ros__parameters``), or the bare parameters.
     node : str, optional
         Fully qualified name of the node whose parameters are wanted; by default those of the only node called
-        ``hd_monitor``, or of the only node there is.
+        ``hd_monitor_node``, or of the only node there is.
 
     Returns
     -------

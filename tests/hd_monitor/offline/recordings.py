@@ -103,20 +103,25 @@ def simulated(prefix: str = "", joint: str = "joint", start: int = START, **para
     from hd_sim_node.simulation import Simulation
 
     given = {name.replace("__", "."): value for name, value in parameters.items()}
+    rig = Simulation(RigSettings.from_mapping(given))
+    return [event for stretch in rig for event in events_of(stretch, prefix=prefix, joint=joint, start=start)]
+
+
+def events_of(stretch: Any, *, prefix: str = "", joint: str = "joint", start: int = START) -> list[Event]:
+    """What a simulated rig sends in one stretch of its time, each message recorded when it was sent."""
     events = []
-    for stretch in Simulation(RigSettings.from_mapping(given)):
-        for due, topic, row in stretch.schedule():
-            if topic == "torsional_acceleration/block":
-                b = stretch.blocks[row]
-                message = block(start + b.stamp, b.period, b.sequence, b.samples)
-            elif topic == "torsional_acceleration":
-                message = accel(start + int(stretch.stamps[row]), float(stretch.samples[row]))
-            else:
-                j = stretch.joint
-                columns = [column for column in (j.position, j.velocity, j.effort) if column is not None]
-                values = [[float(column[row])] for column in columns] + [[]] * (3 - len(columns))
-                message = joint_states(start + int(j.stamps[row]), [joint], *values)
-            events.append(Event(start + due, f"{prefix}/{topic}", message))
+    for due, topic, row in stretch.schedule():
+        if topic == "torsional_acceleration/block":
+            b = stretch.blocks[row]
+            message = block(start + b.stamp, b.period, b.sequence, b.samples)
+        elif topic == "torsional_acceleration":
+            message = accel(start + int(stretch.stamps[row]), float(stretch.samples[row]))
+        else:
+            j = stretch.joint
+            columns = [column for column in (j.position, j.velocity, j.effort) if column is not None]
+            values = [[float(column[row])] for column in columns] + [[]] * (3 - len(columns))
+            message = joint_states(start + int(j.stamps[row]), [joint], *values)
+        events.append(Event(start + due, f"{prefix}/{topic}", message))
     return events
 
 

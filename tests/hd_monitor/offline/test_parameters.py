@@ -18,33 +18,35 @@ BODY = "{ros__parameters: {diagnosis: {warn_index: 0.02}}}"
 BASE = "  ros__parameters:\n    diagnosis.warn_index: 0.03\n    diagnosis: {error_index: 0.09}\n"
 
 
-@pytest.mark.parametrize("name", ["/**", "hd_monitor", "/hd_monitor", "/arm/hd_monitor", "/**/hd_monitor", "other"])
+@pytest.mark.parametrize(
+    "name", ["/**", "hd_monitor_node", "/hd_monitor_node", "/arm/hd_monitor_node", "/**/hd_monitor_node", "other"]
+)
 def test_the_only_node_there_is_is_meant(tmp_path: Path, name: str) -> None:
     assert load(tmp_path, f'"{name}": {BODY}') == {"diagnosis.warn_index": 0.02}
 
 
 def test_a_namespace_may_stand_above_the_node(tmp_path: Path) -> None:
-    assert load(tmp_path, f"arm:\n  hd_monitor: {BODY}") == {"diagnosis.warn_index": 0.02}
-    assert load(tmp_path, f"/arm:\n  hd_monitor: {BODY}", "/arm/hd_monitor") == {"diagnosis.warn_index": 0.02}
+    assert load(tmp_path, f"arm:\n  hd_monitor_node: {BODY}") == {"diagnosis.warn_index": 0.02}
+    assert load(tmp_path, f"/arm:\n  hd_monitor_node: {BODY}", "/arm/hd_monitor_node") == {"diagnosis.warn_index": 0.02}
 
 
 def test_later_sections_override_earlier_ones(tmp_path: Path) -> None:
-    text = f"/**:\n{BASE}hd_monitor: {BODY}\n/**/other: {{ros__parameters: {{x: 1}}}}"
+    text = f"/**:\n{BASE}hd_monitor_node: {BODY}\n/**/other: {{ros__parameters: {{x: 1}}}}"
     assert load(tmp_path, text) == {"diagnosis.warn_index": 0.02, "diagnosis.error_index": 0.09}
 
 
 def test_one_star_stands_for_one_level(tmp_path: Path) -> None:
-    text = f"/*/hd_monitor: {BODY}"
-    assert load(tmp_path, text, "/arm/hd_monitor") == {"diagnosis.warn_index": 0.02}
-    with pytest.raises(ParameterError, match="none of /a/b/hd_monitor"):
-        load(tmp_path, text, "/a/b/hd_monitor")
+    text = f"/*/hd_monitor_node: {BODY}"
+    assert load(tmp_path, text, "/arm/hd_monitor_node") == {"diagnosis.warn_index": 0.02}
+    with pytest.raises(ParameterError, match="none of /a/b/hd_monitor_node"):
+        load(tmp_path, text, "/a/b/hd_monitor_node")
 
 
 def test_two_monitors_must_be_told_apart(tmp_path: Path) -> None:
-    text = f"/left/hd_monitor: {BODY}\n/right/hd_monitor:\n{BASE}"
+    text = f"/left/hd_monitor_node: {BODY}\n/right/hd_monitor_node:\n{BASE}"
     with pytest.raises(ParameterError, match="--node"):
         load(tmp_path, text)
-    assert load(tmp_path, text, "right/hd_monitor")["diagnosis.warn_index"] == 0.03
+    assert load(tmp_path, text, "right/hd_monitor_node")["diagnosis.warn_index"] == 0.03
 
 
 def test_bare_parameters_are_taken_as_they_are(tmp_path: Path) -> None:

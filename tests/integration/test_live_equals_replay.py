@@ -1,0 +1,116 @@
+"""What the node showed is what replay says of a recording of the same messages: every status, value by value."""
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hd_monitor.adapters import MOTION_SOURCE, VIBRATION_SOURCES, Source
+from hd_monitor.diagnosis.status import status_of
+from hd_monitor.offline.bag import Bag
+from hd_monitor.offline.parameters import load_parameters
+from hd_monitor.offline.plan import Request, plan
+from hd_monitor.offline.replay import replay
+
+from tests.hd_monitor.offline import recordings as rec
+
+from .conftest import MONITOR, RIG, Bench, arguments_of
+
+pytestmark = pytest.mark.ros
+
+PARAMETERS = """
+/**/hd_monitor_node:
+  ros__parameters:
+    reducer: {serial: HD-0042}
+    input: {source: SOURCE}
+    diagnosis: {warn_index: 4e-2, error_index: 0.09, confirm_count: 3, confirm_window: 4}
+"""
+RIG_PARAMETERS = (
+    "wait_for_subscribers:=2",
+    "programme:=sweep",
+    "duration:=16.0",
+    "defect:=flexspline",
+    "sensor.noise:=0.5",
+    "sensor.jitter:=0.0001",
+    "sensor.spike_rate:=0.3",
+    "transport.loss:=0.01",
+    "joint_states.loss:=0.01",
+    "joint_states.jitter:=0.0001",
+)
+
+
+class Recorder:
+    """Subscribes to serialised messages and keeps them with the time of their arrival, as ``ros2 bag record`` does."""
+
+    def __init__(self, peer: Any, sources: list[Source]) -> None:
+        from hd_monitor.ros.subscriptions import DrainedSubscription
+
+        self._subscriptions = {
+            source: DrainedSubscription(peer.node, source, depth=100_000, reliability="reliable") for source in sources
+        }
+        self.messages: list[tuple[int, Source, bytes]] = []
+
+    def drain(self) -> None:
+        for source, subscription in self._subscriptions.items():
+            self.messages += [(time.time_ns(), source, data) for data in subscription.drain()]
+
+    def write(self, path: Path) -> Path:
+        from rosbags.rosbag2 import StoragePlugin, Writer
+
+        with Writer(path, version=9, storage_plugin=StoragePlugin.MCAP) as writer:
+            connections = {
+                source: writer.add_connection(
+                    f"/{source.topic}", source.type.replace("/", "/msg/"), typestore=rec.STORE
+                )
+                for source in self._subscriptions
+            }
+            for arrived, source, data in self.messages:
+                writer.write(connections[source], arrived, data)
+        return path
+
+
+@pytest.mark.parametrize(("source", "publish", "scale"), [("block", "block", 5.0), ("accel_stamped", "samples", 2.0)])
+def test_every_live_status_is_replayed_value_by_value(
+    bench: Bench,
+    peer: Any,
+    start_module: Callable[..., Any],
+    tmp_path: Path,
+    source: str,
+    publish: str,
+    scale: float,
+) -> None:
+    parameters = tmp_path / "parameters.yaml"
+    parameters.write_text(PARAMETERS.replace("SOURCE", source))
+    recorder = Recorder(peer, [MOTION_SOURCE, VIBRATION_SOURCES[source]])
+    start_module(MONITOR, "--ros-args", "--params-file", str(parameters))
+    rig = start_module(RIG, *arguments_of((*RIG_PARAMETERS, f"publish:={publish}", f"time_scale:={scale}")))
+
+    def ended() -> bool:
+        recorder.drain()
+        return "has ended" in rig.output
+
+    bench.until(ended, "the end of the programme")
+    seen = len(bench.statuses)
+    bench.until(lambda: any(s.fault_code == "HD_INPUT_LOST" for s in bench.statuses[seen:]), "the end of the data")
+    recorder.drain()
+
+    # What the node says by its own clock, before data came and after it ended, is no verdict on data.
+    live = [
+        (status.level, status.message, status.hardware_id, status.values)
+        for status in bench.statuses
+        if status.fault_code != "HD_INPUT_LOST" and status.number("joint states") > 0
+    ]
+    with Bag(recorder.write(tmp_path / "bag")) as bag:
+        plans = plan(bag, Request(parameters=load_parameters(parameters)))
+        said = [status_of(s.assessment, s.plan.joint, s.plan.settings) for s in replay(bag, plans)]
+    replayed = [(status.level, status.message, status.hardware_id, dict(status.values)) for status in said]
+
+    assert len({status[3]["samples"] for status in live}) >= 3, "too few different statuses to compare"
+    # The node shows the newest assessment once a second, so that several may pass between two statuses: each shown
+    # one must be among the replayed, in the same order.
+    place = 0
+    for status in live:
+        assert status in replayed[place:], f"live status without its like from place {place} on: {status}"
+        place = replayed.index(status, place)
+    assert live[-1] == replayed[-1]
