@@ -297,3 +297,11 @@ def test_zoom_spectrum_and_rms_curve(recording: Recording) -> None:
     assert only.rpm == pytest.approx(1000.0)
     expected = 0.55 * np.sqrt(np.mean(recording.values**2))
     assert only.rms == pytest.approx(expected, rel=0.02)
+
+
+def test_without_any_torque_the_result_is_relative(recording: Recording) -> None:
+    settings = JointSettings.from_mapping({"load.source": "unknown"})
+    assessment = latest(run(recording, settings=settings))
+    assert assessment.identification is not None
+    assert assessment.identification.relative
+    assert assessment.verdict.component is Component.FLEXSPLINE
