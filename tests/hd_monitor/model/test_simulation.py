@@ -25,7 +25,7 @@ def test_lines_agree_with_the_runge_kutta_oracle(speed):
     response = simulate(
         ORACLE_MODEL, constant_speed(ORACLE_MODEL.reducer, speed), duration=settling + revolution, rate=4000.0
     ).after(settling)
-    size = int(round(revolution * response.rate))
+    size = round(revolution * response.rate)
     samples, angle = response.acceleration[:size], response.output_angle[:size]
     orders = [k * order for k in range(1, 5) for order in ORACLE_MODEL.reducer.output_orders]
     measured = [2.0 * abs(np.mean(samples * np.exp(-1j * order * angle))) for order in orders]
