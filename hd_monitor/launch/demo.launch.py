@@ -65,6 +65,10 @@ def generate_launch_description():
         parameters=[
             {
                 "input.source": source,
+                # Loss counts by the stamps, which run as much faster as the rig does.
+                "input.timeout": ParameterValue(
+                    PythonExpression(["3.0 * max(1.0, ", LaunchConfiguration("time_scale"), ")"]), value_type=float
+                ),
                 "reducer.serial": ParameterValue(LaunchConfiguration("serial"), value_type=str),
                 "diagnosis.warn_index": number("warn_index"),
                 "diagnosis.error_index": number("error_index"),

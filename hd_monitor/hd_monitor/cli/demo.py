@@ -1,6 +1,7 @@
 """``hd-monitor demo``: a simulated rig and the monitor as two real nodes over DDS, and the verdict on /diagnostics."""
 
 import argparse
+import math
 import os
 import random
 import signal
@@ -40,6 +41,8 @@ DOMAINS = range(1, 102)  # above them, DDS ports run into the system's ephemeral
 LAST_DOMAIN = 232
 PATIENCE = 60.0
 """Seconds without anything new on /diagnostics after which the demo gives up."""
+INPUT_TIMEOUT = 3.0
+"""Seconds of real time after which the monitor counts an input as lost."""
 FAILED = 1
 
 
@@ -113,15 +116,19 @@ class _Plan:
         self._joint, self._settings = next(
             iter(split_joints(dict(parse_override(text) for text in arguments.monitor)).items())
         )
-        if not arguments.time_scale > 0.0:
+        if not 0.0 < arguments.time_scale < math.inf:
             raise ParameterError(f"--time-scale = {arguments.time_scale:g} stops the time; give a positive number")
         if arguments.domain is not None and not 0 <= arguments.domain <= LAST_DOMAIN:
             raise ParameterError(f"--domain = {arguments.domain} is no ROS_DOMAIN_ID; give 0 to {LAST_DOMAIN}")
+        if arguments.seconds is not None and not 0.0 < arguments.seconds < math.inf:
+            raise ParameterError(f"--seconds = {arguments.seconds:g} is no time to watch; give a positive number")
         self.seconds: float = arguments.seconds or self.rig.programme.cycle_duration
         self.domain: int = free_domain() if arguments.domain is None else arguments.domain
         self.simulator = ("--ros-args", *_pairs([f"defect:={self.defect}", *arguments.sim]))
         self.simulator += ("-p", f"time_scale:={arguments.time_scale}", "-p", "wait_for_subscribers:=1")
-        self.monitor = ("--ros-args", *_pairs(arguments.monitor))
+        # Loss counts by the stamps: where they run fast, a delay of the machine looks as many times as long.
+        timeout = max(1.0, arguments.time_scale) * INPUT_TIMEOUT
+        self.monitor = ("--ros-args", "-p", f"input.timeout:={timeout}", *_pairs(arguments.monitor))
         self.time_scale: float = arguments.time_scale
         self.picture: Path | None = arguments.picture
         self.stay: bool = arguments.stay

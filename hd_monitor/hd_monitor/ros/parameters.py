@@ -135,6 +135,8 @@ def check_names(joints: Sequence[str]) -> None:
         word = re.sub(r"[^A-Za-z0-9]+", "_", joint).strip("_") or "joint"
         if word in groups:
             word = f"{word}_joint"
+        elif word[0].isdigit():
+            word = f"joint_{word}"
         if joint in groups or not joint:
             trouble = "which cannot stand before a parameter's name"
         elif len(joints) > 1 and not _TOPIC_WORD.fullmatch(joint):
