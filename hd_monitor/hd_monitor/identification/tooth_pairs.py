@@ -6,18 +6,14 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from ..acquisition.record import JointSamples, Record
 from ..errors import ParameterError
 from ..reducer import WAVE_GENERATOR_LOBES, LinePair
-from .pair_evidence import CHANCE, LineSolution, line_chances, solve_lines
-from .stroke_sums import Gram, PairOrders, project, trend_columns
-from .strokes import HIGHEST_SHARE, LOWEST_FREQUENCY, Stroke, StrokeCutter, one_speed, samples_of_records
-from .whitening import learn_whitening, settled, whiten
-
-FloatArray = npt.NDArray[np.float64]
-Orders = npt.NDArray[np.int64]
+from .order_scan import OrderScan
+from .pair_evidence import CHANCE, line_chances
+from .stroke_sums import Gram, PairOrders
+from .strokes import Stroke, StrokeCutter, one_speed, samples_of_records
 
 TOOTH_RANGE = (60, 320)
 """Flexspline teeth looked at: reductions 30 to 160, as catalogues have them."""
@@ -27,12 +23,6 @@ MARGIN = math.log(1000.0)
 
 ENCODER_ORDERS = (64, 128, 256, 512)
 """Periods per revolution of common encoders, whose interpolation errors show as lines, with sidebands beside."""
-
-CLIP = 4.0
-"""Robust standard deviations at which the whitened signal is clipped before any line is known."""
-
-TREND_ORDER = 10.0
-"""Knots of the trend per output revolution: no candidate's line is anywhere near."""
 
 
 class ToothPair(NamedTuple):
@@ -52,8 +42,6 @@ class ToothPairEvidence:
     log_evidence : float
         Logarithm of the likelihood ratio against noise alone, less a penalty for the number of lines (BIC); the lines
         at multiples of the pair and at the motor's orders that follow from it count in.
-    as_pair : float
-        Logarithm of the odds for two lines against a single one at either place or between: what travel must part.
     chance : float
         Probability that noise alone makes the more significant one of the pair's two first lines.
     lines_found : int
@@ -62,7 +50,6 @@ class ToothPairEvidence:
 
     teeth: ToothPair
     log_evidence: float
-    as_pair: float
     chance: float
     lines_found: int
 
@@ -76,6 +63,9 @@ class ToothPairRanking:
     ranked : tuple of ToothPairEvidence
     margin : float
         Difference of the log evidence of the first two.
+    as_pair : float
+        Log odds of the first pair's two lines against a single line: near 0 if only one stands out, or if the travel
+        does not part them.
     conclusive : bool
         True if the first pair's lines stand out, as two and not one, and it leads by odds of at least 1000 to 1, over
         motion at more than one speed, and it is not where an encoder's errors lie.
@@ -87,6 +77,7 @@ class ToothPairRanking:
 
     ranked: tuple[ToothPairEvidence, ...]
     margin: float
+    as_pair: float
     conclusive: bool
     statement: str
     travel: float
@@ -141,21 +132,34 @@ def rank_tooth_pairs(
     span = float(min(pair.flexspline for pair in pairs)), float(max(pair.circular_spline for pair in pairs))
     cutter = StrokeCutter(source, span, minimum_speed)
     strokes = cutter.add(samples) + cutter.finish()
-    scans = _scan(strokes, orders.astype(np.float64))
+    scan = OrderScan(strokes, orders)
+    rankings = [_rank(pairs, scan, scan.by_direction(), strokes)]
+    if not rankings[0].conclusive and any(found.lines_found for found in rankings[0].ranked):
+        # Amplitudes and phases that change with the speed, as near a resonance, do not add up over strokes.
+        parts = scan.by_parts()
+        rankings += [_rank(pairs, scan, parts, strokes)] if parts else []
+    return max(rankings, key=lambda ranking: (ranking.conclusive, ranking.ranked[0].log_evidence))
+
+
+def _rank(
+    pairs: Sequence[ToothPair], scan: OrderScan, parts: Sequence[Gram], strokes: Sequence[Stroke]
+) -> ToothPairRanking:
+    """Rank with the strokes pooled in these parts."""
     ranked = sorted(
-        (_evidence(pair, scans, orders) for pair in pairs), key=lambda found: (-found.log_evidence, found.teeth)
+        (_evidence(pair, scan, parts) for pair in pairs), key=lambda found: (-found.log_evidence, found.teeth)
     )
     travel = float(np.ptp(np.concatenate([stroke.angle for stroke in strokes]))) if strokes else 0.0
     margin = ranked[0].log_evidence - ranked[1].log_evidence if len(ranked) > 1 else math.inf
     best = ranked[0]
     speed = one_speed(strokes)
-    clear = best.lines_found > 0 and min(margin, best.as_pair) >= MARGIN
-    conclusive = clear and not math.isfinite(speed) and not _beside_encoder(best.teeth)
+    as_pair = _odds_as_pair(best.teeth, scan, parts) if best.lines_found else 0.0
+    clear = best.lines_found > 0 and min(margin, as_pair) >= MARGIN
     return ToothPairRanking(
         ranked=tuple(ranked),
         margin=margin,
-        conclusive=conclusive,
-        statement=_statement(ranked, margin, travel, speed),
+        as_pair=as_pair,
+        conclusive=clear and not math.isfinite(speed) and not _beside_encoder(best.teeth),
+        statement=_statement(ranked, margin, as_pair, travel, speed),
         travel=travel,
     )
 
@@ -176,63 +180,32 @@ def _surroundings(pair: ToothPair) -> tuple[int, int]:
     return math.floor(lowest), math.ceil(PairOrders.around(_lines(pair, 1.0)).placebos.max())
 
 
-def _scan(strokes: Sequence[Stroke], orders: FloatArray) -> list[Gram]:
-    """Sums over the strokes, for each direction, with every order of a range as a line and then the signal."""
-    trend = [trend_columns(stroke, TREND_ORDER) for stroke in strokes]
-    flat = [project(own, stroke.values[:, None])[:, 0] for own, stroke in zip(trend, strokes, strict=True)]
-    coefficients = learn_whitening(flat)
-    scans = []
-    for direction in (1, -1):
-        total, rows, weight = np.zeros((2 * orders.size + 1, 2 * orders.size + 1)), 0, 0.0
-        for own, stroke in zip(trend, strokes, strict=True):
-            good = settled(stroke.starts, coefficients)
-            count = int(np.count_nonzero(good))
-            if stroke.direction != direction or count < 4 * own.shape[1]:
-                continue
-            frequency = np.multiply.outer(stroke.speed, orders) / math.tau
-            band = (frequency >= LOWEST_FREQUENCY) & (frequency <= HIGHEST_SHARE * stroke.rate)
-            columns = np.column_stack([stroke.columns(orders) * np.tile(band, 2), stroke.values - stroke.values.mean()])
-            columns = project(whiten(coefficients, own)[good], whiten(coefficients, columns)[good])
-            limit = CLIP * float(np.median(np.abs(columns[:, -1]))) / 0.6745
-            columns[:, -1] = np.clip(columns[:, -1], -limit, limit)
-            power = float(columns[:, -1] @ columns[:, -1]) / count
-            if power > 0.0:
-                total += columns.T @ columns / power
-                rows, weight = rows + count, weight + count / power
-        if rows:
-            scans.append(Gram(products=total, rows=rows, noise=math.sqrt(rows / weight)))
-    return scans
+def _evidence(pair: ToothPair, scan: OrderScan, parts: Sequence[Gram]) -> ToothPairEvidence:
+    """Sum the evidence for a pair's lines over parts and, once it shows itself, over its multiples in the range."""
+    fits = [fit for part in parts if (fit := scan.solve(_around(_lines(pair, 1.0)), part)) is not None]
+    if not fits:
+        return ToothPairEvidence(teeth=pair, log_evidence=-math.inf, chance=1.0, lines_found=0)
+    chances = np.minimum(np.min([line_chances(fit) for fit in fits], axis=0) * 2 * len(fits), 1.0)
+    found = int(np.count_nonzero(chances < CHANCE))
+    total = sum(fit.log_evidence for fit in fits)
+    multiples = [0.5, *range(2, scan.highest // pair.circular_spline + 1)] if found else []
+    for k in multiples:
+        more = (scan.solve(_around(_lines(pair, k)), part) for part in parts)
+        total += sum(fit.log_evidence for fit in more if fit is not None)
+    return ToothPairEvidence(teeth=pair, log_evidence=total, chance=float(chances.min()), lines_found=found)
 
 
-def _evidence(pair: ToothPair, scans: Sequence[Gram], scanned: Orders) -> ToothPairEvidence:
-    """Sum the evidence for a pair's lines over directions and multiples, as far as the scan goes."""
-    chances, own, others = [], 0.0, 0.0
+def _odds_as_pair(pair: ToothPair, scan: OrderScan, parts: Sequence[Gram]) -> float:
+    """Logarithm of the odds for two lines against a single one, at either place or between: what travel must part."""
     single = np.zeros(len(_between(pair)))
-    for scan in scans:
-        first = _solve(_around(_lines(pair, 1.0)), scan, scanned)
-        if first is None:
-            continue
-        chances.append(line_chances(first))
-        own += first.log_evidence
+    both = 0.0
+    for part in parts:
+        fit = scan.solve(_around(_lines(pair, 1.0)), part)
+        both += fit.log_evidence if fit is not None else 0.0
         for number, order in enumerate(_between(pair)):
-            alone = _solve(_around(_lines(pair, 1.0), only=order), scan, scanned)
+            alone = scan.solve(_around(_lines(pair, 1.0), only=order), part)
             single[number] += alone.log_evidence if alone is not None else 0.0
-        k = 0.5
-        while k * pair.circular_spline <= scanned[-1]:
-            more = _solve(_around(_lines(pair, k)), scan, scanned) if k != 1.0 else None
-            others += more.log_evidence if more is not None else 0.0
-            k = 1.0 if k < 1.0 else k + 1.0
-    if not chances:
-        return ToothPairEvidence(teeth=pair, log_evidence=-math.inf, as_pair=-math.inf, chance=1.0, lines_found=0)
-    corrected = np.minimum(np.min(chances, axis=0) * 2 * len(chances), 1.0)
-    found = int(np.count_nonzero(corrected < CHANCE))
-    return ToothPairEvidence(
-        teeth=pair,
-        log_evidence=own + (others if found else 0.0),
-        as_pair=own - max(float(single.max()), 0.0),
-        chance=float(corrected.min()),
-        lines_found=found,
-    )
+    return both - max(float(single.max()), 0.0)
 
 
 def _between(pair: ToothPair) -> range:
@@ -246,24 +219,12 @@ def _around(lines: LinePair, only: float | None = None) -> PairOrders:
     return orders if only is None else replace(orders, lines=np.array([float(only)]))
 
 
-def _solve(orders: PairOrders, scan: Gram, scanned: Orders) -> LineSolution | None:
-    """Fit lines with their placebo orders out of a scan; None where it does not hold or determine them."""
-    placebos = orders.placebos[(orders.placebos >= scanned[0]) & (orders.placebos <= scanned[-1])]
-    wanted = np.concatenate([orders.lines, placebos])
-    if orders.lines.min() < scanned[0] or orders.lines.max() > scanned[-1] or (wanted != np.rint(wanted)).any():
-        return None
-    place = np.rint(wanted).astype(np.int64) - scanned[0]
-    lines, floor = place[: orders.lines.size], place[orders.lines.size :]
-    index = np.concatenate([lines, lines + scanned.size, floor, floor + scanned.size, [2 * scanned.size]])
-    return solve_lines(scan.products[np.ix_(index, index)], replace(orders, placebos=placebos))
-
-
 def _beside_encoder(pair: ToothPair) -> bool:
     """Whether a pair's lines lie where an encoder's own errors would."""
     return any(pair.flexspline - 1 <= order <= pair.circular_spline + 1 for order in ENCODER_ORDERS)
 
 
-def _statement(ranked: Sequence[ToothPairEvidence], margin: float, travel: float, speed: float) -> str:
+def _statement(ranked: Sequence[ToothPairEvidence], margin: float, as_pair: float, travel: float, speed: float) -> str:
     """Say what the ranking is worth."""
     best = ranked[0]
     name = f"{best.teeth.flexspline}/{best.teeth.circular_spline}"
@@ -274,7 +235,7 @@ def _statement(ranked: Sequence[ToothPairEvidence], margin: float, travel: float
     if margin < MARGIN:
         second = f"{ranked[1].teeth.flexspline}/{ranked[1].teeth.circular_spline}"
         why = f"{second} nearly as well (odds {math.exp(margin):.0f} to 1 over {math.degrees(travel):.0f}° of travel)"
-    elif best.as_pair < MARGIN:
+    elif as_pair < MARGIN:
         why = (
             f"a single line explains {math.degrees(travel):.0f}° of travel nearly as well, and may be something else's"
         )
