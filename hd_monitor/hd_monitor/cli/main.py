@@ -16,6 +16,7 @@ COMMANDS = {
     "replay": ("hd_monitor.cli.replay", "put a recorded bag through the same core, with JSON and a report"),
     "compare": ("hd_monitor.cli.compare", "compare two bags or two JSON results: what changed"),
     "identify": ("hd_monitor.cli.identify", "estimate the stiffness indexes, fn and ζ from a recorded run"),
+    "parameters": ("hd_monitor.cli.parameters", "list every parameter of both nodes, as a page or as a parameter file"),
     "paper": ("hd_monitor.cli.paper", "reproduce every figure, table and claim of the source paper"),
 }
 """Subcommand: (module, help). A module is imported only when its command runs, so that none needs another's extras."""
