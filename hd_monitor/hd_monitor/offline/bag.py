@@ -196,6 +196,7 @@ class Bag:
         if file.suffix not in COMPRESSED_SUFFIXES:
             return file
         plain = self._folder() / file.stem
+        plain.touch()
         try:
             decompress_file(file, plain)
         except Exception as error:  # the class is the decompressor's own

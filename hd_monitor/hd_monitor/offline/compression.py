@@ -2,31 +2,42 @@
 
 import importlib
 import shutil
-import sys
 from pathlib import Path
 from typing import Any
 
 MAGIC = b"\x28\xb5\x2f\xfd"
 """First bytes of Zstandard data; no CDR message begins so."""
 
+_ZSTANDARD = ("compression.zstd", "backports.zstd", "zstandard")  # Python's own, then by rosbags' age
+
 
 def _module() -> Any:
-    return importlib.import_module("compression.zstd" if sys.version_info >= (3, 14) else "backports.zstd")
+    for name in _ZSTANDARD:
+        try:
+            return importlib.import_module(name)
+        except ModuleNotFoundError:
+            continue
+    raise ModuleNotFoundError("no module for Zstandard", name="zstandard")
+
+
+def _decompressor() -> Any:
+    made = _module().ZstdDecompressor()
+    return made.decompressobj() if hasattr(made, "decompressobj") else made
 
 
 def decompress(data: bytes) -> bytes:
-    """Return the contents of Zstandard data.
+    """Return the contents of Zstandard data; of data cut off, what precedes the cut.
 
     Raises
     ------
     Exception
         If the data is damaged; the class is the module's own.
     """
-    return bytes(_module().decompress(data))
+    return bytes(_decompressor().decompress(data))
 
 
 def decompress_leniently(kind: str, data: bytes) -> bytes:
-    """Return as much of the contents of Zstandard or LZ4 data as there is: cut-off data gives what precedes the cut.
+    """Return as much of the contents of a chunk as there is, by the name of its compression.
 
     Raises
     ------
@@ -38,7 +49,7 @@ def decompress_leniently(kind: str, data: bytes) -> bytes:
     if kind == "":
         return data
     if kind == "zstd":
-        return bytes(_module().ZstdDecompressor().decompress(data))
+        return decompress(data)
     if kind == "lz4":
         return bytes(importlib.import_module("lz4.frame").LZ4FrameDecompressor().decompress(data))
     raise ValueError(f"its compression {kind!r} is unknown")
