@@ -10,7 +10,6 @@ import sys
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from pathlib import Path
 from typing import Any
 
 import rclpy
@@ -78,9 +77,6 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="NAME:=VALUE",
         help="a parameter of hd_monitor_node, repeatable",
     )
-    parser.add_argument(
-        "--picture", type=Path, metavar="FILE", help="save the zoom spectrum with its verdict (PNG, SVG)"
-    )
     parser.add_argument("--stay", action="store_true", help="keep both nodes running afterwards, until Ctrl+C")
     parser.add_argument("--plain", action="store_true", help="print lines even on a terminal")
 
@@ -130,7 +126,6 @@ class _Plan:
         timeout = max(1.0, arguments.time_scale) * INPUT_TIMEOUT
         self.monitor = ("--ros-args", "-p", f"input.timeout:={timeout}", *_pairs(arguments.monitor))
         self.time_scale: float = arguments.time_scale
-        self.picture: Path | None = arguments.picture
         self.stay: bool = arguments.stay
 
     @property

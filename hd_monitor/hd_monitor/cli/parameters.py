@@ -75,7 +75,7 @@ def markdown(nodes: Sequence[str]) -> str:
 
 def _rig_parameters() -> tuple[tuple[Parameter, ...], tuple[Parameter, ...]]:
     # By name: this package must not depend on the simulator's, which may not even be installed.
-    rig = importlib.import_module("hd_sim_node.settings").PARAMETERS
+    rig = importlib.import_module("hd_sim_node.parameters").PARAMETERS
     node = importlib.import_module("hd_sim_node.node_parameters").NODE_PARAMETERS
     return rig, node
 

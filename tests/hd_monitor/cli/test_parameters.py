@@ -5,7 +5,7 @@ from hd_monitor.cli.main import main
 from hd_monitor.cli.parameters import markdown
 from hd_monitor.settings import NODE_PARAMETERS, PARAMETERS, set_aside_foreign, split_joints
 from hd_sim_node.node_parameters import NODE_PARAMETERS as RIG_NODE_PARAMETERS
-from hd_sim_node.settings import PARAMETERS as RIG_PARAMETERS
+from hd_sim_node.parameters import PARAMETERS as RIG_PARAMETERS
 from hd_sim_node.settings import RigSettings, pick
 
 PAGE = Path(__file__).resolve().parents[3] / "msgs_doc" / "parameters.md"
