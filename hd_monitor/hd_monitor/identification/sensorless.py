@@ -197,6 +197,8 @@ class SensorlessIdentifier:
             misfit=float(np.mean([pair.floor for pair in pairs])),
             doubts=self._doubts(LinePair(float(cs), float(fs))),
             blockers=reasons_against_naming(self._directions, self._reducer.output_orders, self._confidence),
+            load_fluctuation=math.nan,
+            instability_speed=math.nan,
         )
 
     def _lines(self, groups: list[tuple[str, list[_Pooled]]], first: list[PairEstimate]) -> tuple[LineEstimate, ...]:
@@ -272,6 +274,8 @@ class SensorlessIdentifier:
             index_std=LinePair(float("inf"), float("inf")),
             relative=True,
             blockers=reasons,
+            load_fluctuation=math.nan,
+            instability_speed=math.nan,
         )
 
 

@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 from hd_monitor.acquisition.record import JointSamples
 from hd_monitor.diagnosis import Component, Judge, Limits
+from hd_monitor.diagnosis.status import status_of
 from hd_monitor.identification.sensorless import SensorlessIdentifier
+from hd_monitor.monitor import Monitor
 from hd_monitor.reducer import LinePair
 from hd_monitor.settings import JointSettings
 from hypothesis import given, settings
@@ -319,6 +321,21 @@ def test_joint_2_of_a_real_arm_shows_the_circular_spline_in_every_file_and_direc
 def test_joint_2_is_named(ur10e, file):
     identifier = identify(ur10e(file, 2), settings_of(**UR10E))
     assert named(identifier, settings_of(**UR10E)) is Component.CIRCULAR_SPLINE
+
+
+@pytest.mark.shared_data
+@pytest.mark.parametrize("file", [SHORT, LONG])
+def test_the_monitor_shows_joint_2_in_its_status(ur10e, file):
+    samples, parameters = ur10e(file, 2), settings_of(**UR10E)
+    monitor = Monitor("joint_2", parameters)
+    monitor.add_motion(np.rint(1e9 * samples.times).astype(np.int64), samples.angle, samples.speed, samples.effort)
+    assessment = monitor.finish()
+    assert assessment is not None
+    status = status_of(assessment, "joint_2", parameters)
+    assert status.value("component") == "circular_spline"
+    assert status.value("index kind") == "relative"
+    assert status.value("unstable from (rpm)") == "unknown"
+    assert "relative only" in status.message
 
 
 @pytest.mark.shared_data
