@@ -20,7 +20,7 @@ from .noise_floor import NoiseFloor
 from .normal_equations import Evidence
 from .refinement import Score
 from .result import Identification
-from .scrutiny import Scrutiny
+from .scrutiny import Scrutiny, Suspect
 from .stretch import Stretch
 from .unknowns import Unknowns
 
@@ -81,15 +81,17 @@ class Conclusions:
         load_std = math.sqrt(covariance[u.load, u.load].diagonal().reshape(2, -1).sum(axis=0)[strongest] / 2.0)
         snr = _signal_to_noise(evidence)
         findings = self._scrutiny.examine(
-            unknowns=u,
-            values=values,
-            indexes=indexes,
-            scores=scores,
-            active=active,
-            inflation=inflation,
-            coverage=coverage,
-            given=predictor.given,
-            relative=relative,
+            Suspect(
+                predictor=predictor,
+                values=values,
+                active=active,
+                indexes=indexes,
+                scores=scores,
+                inflation=inflation,
+                coverage=coverage,
+                signal_to_noise=snr,
+                relative=relative,
+            )
         )
         return Identification(
             circular_spline=u.phasors(values, u.circular_spline),

@@ -28,7 +28,7 @@ LOAD_ORDERS = (1, 2)
 """Cycles per output revolution of unknown load fluctuations: gravity, and the one that mimics the other spline."""
 
 WINDOW = 16.0
-"""Motion [s] that is fitted as a whole with every new stretch; from then on each stretch is used once."""
+"""Motion [s] that is kept to be fitted anew as a whole; from then on each stretch is used once."""
 
 CONTRADICTION = 4.5
 """Standard deviations by which data must contradict what was given before it is estimated, too."""
@@ -43,6 +43,7 @@ _SECOND_LOOK = 3.5  # s of motion at which the exploration made on the first sec
 _POOR = 1.5  # inflation of the variances, by what the fit leaves at the lines, from which other solutions are sought
 _NOMINAL_INDEX = 0.05  # of the larger spline, where an unknown torque leaves the scale open
 _ROUNDS = 8
+_MOVED = 3.0  # standard deviations by which values may move before earlier stretches are linearised anew
 _EXPLORED = 6.0  # s of the newest motion on which other solutions are tried
 
 
@@ -83,7 +84,7 @@ class Estimation:
         self._values = u.zero()
         self._active = u.mask(u.stiffness, u.load)
         self._recent: list[Stretch] = []
-        self._settled = False
+        self._fitted_anew = 0.0
         self._floor: NoiseFloor | None = None
         self._line_residual = LineResidual.empty(u.harmonics)
         self._explored = 0.0
@@ -95,7 +96,7 @@ class Estimation:
     @property
     def well_known(self) -> bool:
         """Whether more data would tell nothing more of interest."""
-        return self._settled and self.result is not None and self._conclusions.well_known(self.result)
+        return self.seconds >= WINDOW and self.result is not None and self._conclusions.well_known(self.result)
 
     def take(self, records: Sequence[Record]) -> None:
         """Use a stretch, given as records that follow each other."""
@@ -108,18 +109,18 @@ class Estimation:
         while sum(s.duration for s in self._recent[1:]) >= WINDOW:
             self._recent.pop(0)
         fit = self._fit()
-        floor, residual = self._rest(fit)
-        if residual.inflation(self._coverage.span) > _POOR and self.seconds > 2.0 + 1.5 * self._explored:
+        floor, rest = self._rest(fit)
+        if rest.inflation(self._coverage.span) > _POOR and self.seconds > 2.0 + 1.5 * self._explored:
             fit = self._look_elsewhere(fit)
-            floor, residual = self._rest(fit)
+            floor, rest = self._rest(fit)
         questioned = self._question(fit)
         if questioned is not fit:
             fit = questioned
-            floor, residual = self._rest(fit)
-        self._values, self._floor, self._line_residual = fit.values, floor, residual
+            floor, rest = self._rest(fit)
+        self._values, self._floor, self._line_residual = fit.values, floor, rest
+        self._learnt = self._learnt.plus(fit.equations, fit.values)
         self._conclude(fit)
-        if self._settled or sum(s.duration for s in self._recent) >= WINDOW:
-            self._learn(fit)
+        self.age(sum(item.stretch.duration for item in fit.evidence))
 
     # Preparation ---------------------------------------------------------------------------------------------------
 
@@ -142,7 +143,7 @@ class Estimation:
             step = problem.at(u.zero()).step
             size = max(float(np.linalg.norm(step[part])) for part in (u.circular_spline, u.flexspline))
             self._nominal_torque = unit * max(size, 1e-6) / _NOMINAL_INDEX
-            self._active |= u.mask(u.torque)
+            self._active = self._active | u.mask(u.torque)
         return self._builder.build(records, self._nominal_torque)
 
     def _problem(self, stretches: Sequence[Stretch], prior: Knowledge) -> Problem:
@@ -161,21 +162,31 @@ class Estimation:
     # Fitting -------------------------------------------------------------------------------------------------------
 
     def _fit(self) -> Fit:
-        """Fit the newest stretch on top of what is learnt, or all recent ones as long as nothing has been learnt."""
-        if self._settled:
-            return self._problem(self._recent[-1:], self._prior + self._learnt).solve(self._values, rounds=2)
-        problem = self._problem(self._recent, self._prior)
-        if self._floor is None or (self._explored < _SECOND_LOOK <= self.seconds):
-            return self._explore(problem, self._load_starts(known=self._floor is not None))
-        return problem.solve(self._values, rounds=_ROUNDS)
+        """Fit the newest stretch on top of what is learnt; every now and then all anew, while all are at hand."""
+        young = self.seconds <= WINDOW
+        if self._floor is None or (young and self._explored < _SECOND_LOOK <= self.seconds):
+            return self._explore(self._anew(), self._load_starts(known=self._floor is not None))
+        if young and self.seconds >= 2.0 * self._fitted_anew:
+            return self._anew().solve(self._values, rounds=_ROUNDS)
+        fit = self._problem(self._recent[-1:], self._prior + self._learnt).solve(self._values, rounds=3)
+        change = fit.values - self._values
+        if young and float(change @ self._learnt.information @ change) > _MOVED**2:
+            fit = self._anew().solve(fit.values, rounds=_ROUNDS)
+        return fit
+
+    def _anew(self) -> Problem:
+        """Return the problem of all recent stretches, and forget what was learnt of them and others."""
+        self._fitted_anew = self.seconds
+        self._learnt = Knowledge.none(self._unknowns.size)
+        return self._problem(self._recent, self._prior)
 
     def _load_starts(self, *, known: bool) -> list[FloatArray]:
         """Starts for the load, whose phase has local minima; and the best values so far, if any are known."""
+        u = self._unknowns
         starts = [self._values] if known else []
         for load in (0.0, *_START_LOADS):
-            start = self._unknowns.zero()
-            start[self._unknowns.frequency] = self._values[self._unknowns.frequency]
-            start[self._unknowns.load] = [0.0, load.real, 0.0, load.imag]
+            start = self._values * ~u.mask(u.stiffness, u.load)
+            start[u.load] = [0.0, load.real, 0.0, load.imag]
             starts.append(start)
         return starts
 
@@ -197,18 +208,18 @@ class Estimation:
 
     def _look_elsewhere(self, fit: Fit) -> Fit:
         """Try other solutions on the recent stretches: the fit leaves more at the lines than noise could."""
-        self._values = fit.values
-        starts = self._load_starts(known=True)
-        problem = self._problem(self._recent, self._prior)
+        u = self._unknowns
+        self._active = self._active & ~u.mask(u.frequency, u.damping, u.delay)
         if self._refine:
-            self._active |= self._unknowns.mask(self._unknowns.frequency, self._unknowns.damping)
-            problem = replace(problem, active=self._active)
+            self._active = self._active | u.mask(u.frequency, u.damping)
+        self._values = np.where(self._active, fit.values, 0.0)
+        starts = self._load_starts(known=True)
+        if self._refine:
             for shift in _START_FREQUENCIES:
-                start = self._unknowns.zero()
-                start[self._unknowns.frequency] = shift
+                start = u.zero()
+                start[u.frequency] = shift
                 starts.append(start)
-        self._settled = False
-        self._learnt = Knowledge.none(self._unknowns.size)
+        problem = self._anew()
         return self._explore(problem, starts)
 
     def _question(self, fit: Fit) -> Fit:
@@ -225,7 +236,7 @@ class Estimation:
             if not wrong:
                 break
             worst = max(wrong, key=lambda place: scores[place].significance)
-            self._active |= u.mask(worst)
+            self._active = self._active | u.mask(worst)
             stretches = [item.stretch for item in fit.evidence]
             fit = self._problem(stretches, self._prior + self._learnt).solve(fit.values, rounds=_ROUNDS)
         return fit
@@ -237,19 +248,13 @@ class Estimation:
 
     def _rest(self, fit: Fit) -> tuple[NoiseFloor, LineResidual]:
         """Noise floor, and what is left at the lines, with a fit's part in both."""
-        if self._settled and self._floor is not None:
-            floor, rest = self._floor + fit.floor, self._line_residual
-        else:
+        if self._floor is None or self._fitted_anew == self.seconds:
             floor, rest = fit.floor, LineResidual.empty(self._unknowns.harmonics)
+        else:
+            floor, rest = self._floor + fit.floor, self._line_residual
         for item in fit.evidence:
             rest = rest.plus(item, floor, self._reducer)
         return floor, rest
-
-    def _learn(self, fit: Fit) -> None:
-        """Add the evidence of a fit to what is learnt."""
-        self._settled = True
-        self._learnt = self._learnt.plus(fit.equations, fit.values)
-        self.age(sum(item.stretch.duration for item in fit.evidence))
 
     def age(self, duration: float) -> None:
         """Let `duration` [s] of motion pass, over which evidence fades."""
@@ -261,7 +266,7 @@ class Estimation:
 
     def _conclude(self, fit: Fit) -> None:
         u = self._unknowns
-        knowledge = (self._prior + self._learnt).plus(fit.equations, fit.values)
+        knowledge = self._prior + self._learnt
         places = (u.frequency, u.damping, u.torque, u.delay)
         assert self._predictor is not None
         self.result = self._conclusions.conclude(

@@ -11,7 +11,7 @@ from .knowledge import Knowledge
 from .linearisation import Predictor
 from .noise_floor import NoiseFloor
 from .normal_equations import Evidence, NormalEquations, examine
-from .stretch import Stretch
+from .stretch import FREQUENCY_MARGIN, Stretch
 
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
@@ -110,7 +110,7 @@ class Problem:
                 break
             step = fit.step * self._room(fit.values, fit.step)
             for _ in range(_HALVINGS):
-                trial = self.at(fit.values + step)
+                trial = self.at(self._bounded(fit.values + step))
                 if math.isfinite(trial.cost) and trial.cost < fit.cost:
                     break
                 step = 0.4 * step
@@ -143,6 +143,19 @@ class Problem:
         fit = self.solve(start.values, rounds=rounds)
         freedom = fit.equations.freedom
         return freedom * math.log(self.floor.mean * fit.equations.cost) + self.prior.cost(fit.values), self, fit
+
+    def _bounded(self, values: FloatArray) -> FloatArray:
+        """Return the values with those that have natural bounds kept within."""
+        unknowns = self.predictor.unknowns
+        bounded = values.copy()
+        for place, bound in (
+            (unknowns.frequency, math.log(FREQUENCY_MARGIN)),
+            (unknowns.damping, 1.5),
+            (unknowns.torque, 4.0),
+            (unknowns.delay, 0.05),
+        ):
+            bounded[place] = min(max(float(values[place]), -bound), bound)
+        return bounded
 
     def _room(self, values: FloatArray, step: FloatArray) -> float:
         """Part of a step that keeps the stiffness positive."""

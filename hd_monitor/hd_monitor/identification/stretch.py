@@ -16,10 +16,12 @@ from .conditioning import condition
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
 
+FREQUENCY_MARGIN = 1.25
+"""Factor by which the natural frequency may turn out higher than given."""
+
 LARGEST_PHASE_STEP = 1.0
 """Phase [rad] of the natural oscillation and of the fastest stiffness harmonic that an integration step may cover."""
 
-_FREQUENCY_MARGIN = 1.15  # by which the natural frequency may turn out higher than given
 _SIDE_ORDERS = 4.0  # orders above the highest line at which load fluctuations may still put side lines
 
 
@@ -189,7 +191,7 @@ class StretchBuilder:
         )
         top_speed = float(np.abs(speed).max())
         line = (self.harmonics * self.reducer.output_orders.flexspline + _SIDE_ORDERS) * top_speed / math.tau
-        signal = condition(raw, period, line, _FREQUENCY_MARGIN * self.natural_frequency)
+        signal = condition(raw, period, line, FREQUENCY_MARGIN * self.natural_frequency)
         places = signal.first + signal.factor * np.arange(signal.values.size)
         angle, speed, measured = angle[places], speed[places], measured[places]
         step = period * signal.factor
@@ -215,7 +217,7 @@ class StretchBuilder:
         )
 
     def _substeps(self, line: float, step: float) -> int:
-        fastest = math.tau * max(_FREQUENCY_MARGIN * self.natural_frequency, 0.7 * line)
+        fastest = math.tau * max(FREQUENCY_MARGIN * self.natural_frequency, 0.7 * line)
         return max(1, math.ceil(fastest * step / LARGEST_PHASE_STEP))
 
     def _path(self, angle: FloatArray, speed: FloatArray, step: float, torque: FloatArray, places: FloatArray) -> Path:
