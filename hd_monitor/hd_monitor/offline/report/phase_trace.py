@@ -37,11 +37,11 @@ def phase_trace(record: Record, reducer: Reducer) -> PhaseTrace | None:
     first = reducer.line_frequencies(rpm).circular_spline
     band = (0.5 * first, 0.45 / record.period)
     begin, end = max(whole_runs(record.acceleration), key=lambda run: run[1] - run[0], default=(0, 0))
-    if first * (end - begin) * record.period < _FEWEST_CYCLES or band[0] >= band[1]:
+    if first * (end - begin) * record.period < _FEWEST_CYCLES or first >= band[1]:
         return None
     # Samples lost at either end of the record would leak into the band: fade in and out, then show the middle.
     values = filled(record.acceleration[begin:end])
-    edge = min(values.size // 4, max(1, round(2.0 / (first * record.period))))
+    edge = min(values.size // 8, max(1, round(2.0 / (first * record.period))))
     fade = np.ones(values.size)
     ramp = 0.5 - 0.5 * np.cos(math.pi * (np.arange(edge) + 0.5) / edge)
     fade[:edge], fade[-edge:] = ramp, ramp[::-1]
@@ -53,6 +53,7 @@ def phase_trace(record: Record, reducer: Reducer) -> PhaseTrace | None:
     count = _FINER * values.size
     velocity = _FINER * np.fft.irfft(spectrum * integral, count)
     displacement = _FINER * np.fft.irfft(spectrum * integral**2, count)
-    shown = min(values.size - 2 * edge, round(_CYCLES_SHOWN / (first * record.period)))
-    part = slice(_FINER * (values.size - edge - shown), _FINER * (values.size - edge))
+    guard = 2 * edge  # what the fade itself sets ringing
+    shown = min(values.size - 2 * guard, round(_CYCLES_SHOWN / (first * record.period)))
+    part = slice(_FINER * (values.size - guard - shown), _FINER * (values.size - guard))
     return PhaseTrace(displacement[part], velocity[part], band, rpm)
