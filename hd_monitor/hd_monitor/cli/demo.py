@@ -3,9 +3,7 @@
 import argparse
 import math
 import os
-import random
 import signal
-import socket
 import sys
 import time
 from collections.abc import Iterator, Sequence
@@ -31,13 +29,12 @@ from ..reducer import LinePair
 from ..settings import split_joints
 from .children import ChildError, Children
 from .demo_screen import Screen, View
+from .domain import LAST_DOMAIN, free_domain
 
 DEFECTS = ("flexspline", "circular_spline", "both", "none")
 TIME_SCALE = 8.0
 SIMULATOR = ("hd_sim_node", "hd_sim_node.node")
 MONITOR = ("hd_monitor_node", "hd_monitor.ros.node")
-DOMAINS = range(1, 102)  # above them, DDS ports run into the system's ephemeral ones
-LAST_DOMAIN = 232
 PATIENCE = 60.0
 """Seconds without anything new on /diagnostics after which the demo gives up."""
 INPUT_TIMEOUT = 3.0
@@ -106,9 +103,8 @@ class _Plan:
     """What is simulated, for how long and where."""
 
     def __init__(self, arguments: argparse.Namespace) -> None:
-        self.defect: str = arguments.defect
         given = dict(parse_override(text) for text in arguments.sim)
-        self.rig = RigSettings.from_mapping(pick({"defect": self.defect} | given, RIG_NODE_PARAMETERS))
+        self.rig = RigSettings.from_mapping(pick({"defect": arguments.defect} | given, RIG_NODE_PARAMETERS))
         self._joint, self._settings = next(
             iter(split_joints(dict(parse_override(text) for text in arguments.monitor)).items())
         )
@@ -120,7 +116,7 @@ class _Plan:
             raise ParameterError(f"--seconds = {arguments.seconds:g} is no time to watch; give a positive number")
         self.seconds: float = arguments.seconds or self.rig.programme.cycle_duration
         self.domain: int = free_domain() if arguments.domain is None else arguments.domain
-        self.simulator = ("--ros-args", *_pairs([f"defect:={self.defect}", *arguments.sim]))
+        self.simulator = ("--ros-args", *_pairs([f"defect:={arguments.defect}", *arguments.sim]))
         self.simulator += ("-p", f"time_scale:={arguments.time_scale}", "-p", "wait_for_subscribers:=1")
         # Loss counts by the stamps: where they run fast, a delay of the machine looks as many times as long.
         timeout = max(1.0, arguments.time_scale) * INPUT_TIMEOUT
@@ -129,10 +125,13 @@ class _Plan:
         self.stay: bool = arguments.stay
 
     @property
-    def speeds(self) -> str:
-        """The programme in words."""
-        speeds = self.rig.programme.speeds
-        return f"{self.rig['programme']}, {min(abs(speeds)):.0f} to {max(abs(speeds)):.0f} rpm"
+    def description(self) -> str:
+        """What is simulated, in words."""
+        speeds = abs(self.rig.programme.speeds)
+        return (
+            f"a rig with defect {self.rig['defect']}: {self.rig['programme']}, {min(speeds):.0f} to "
+            f"{max(speeds):.0f} rpm, {self.time_scale:g} × real time"
+        )
 
     @property
     def expected(self) -> str:
@@ -157,21 +156,6 @@ def _pairs(parameters: Sequence[str]) -> tuple[str, ...]:
 
 def _interrupt(number: int, frame: Any) -> None:
     raise KeyboardInterrupt
-
-
-def free_domain() -> int:
-    """Find a ROS_DOMAIN_ID in which no DDS participant of this machine is.
-
-    A participant binds a UDP port that stands for its domain, so a port that can be bound is a domain that is free.
-    """
-    for domain in random.sample(DOMAINS, len(DOMAINS)):
-        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-            try:
-                probe.bind(("", 7410 + 250 * domain))
-            except OSError:
-                continue
-            return domain
-    raise ParameterError("every ROS_DOMAIN_ID seems to be in use on this machine; give one with --domain")
 
 
 class _Listener:
@@ -228,14 +212,9 @@ def _listening(domain: int) -> Iterator[_Listener]:
 
 
 def _watch(plan: _Plan, children: Children, screen: Screen) -> int:
-    screen.line(
-        f"hd_sim_node       simulates a rig with defect: {plan.defect}, {plan.speeds}, {plan.time_scale:g} times "
-        f"as fast as real time (process {children.start(*SIMULATOR, *plan.simulator)})"
-    )
-    screen.line(
-        f"hd_monitor_node   watches it over DDS, ROS_DOMAIN_ID={plan.domain} "
-        f"(process {children.start(*MONITOR, *plan.monitor)})"
-    )
+    rig, monitor = children.start(*SIMULATOR, *plan.simulator), children.start(*MONITOR, *plan.monitor)
+    screen.line(f"hd_sim_node      {plan.description}  (process {rig})")
+    screen.line(f"hd_monitor_node  watches it over DDS, ROS_DOMAIN_ID={plan.domain}  (process {monitor})")
     screen.line()
     with _listening(plan.domain) as listener:
         view = _follow(plan, children, screen, listener)

@@ -134,12 +134,12 @@ class Screen:
             index = view.number(f"{key} (%)") or 0.0
             lines.append(f"  {name:15}  {self._bar(index / top)}  {view.percent(key)}")
         if warn is not None and error is not None:
-            scale = [" "] * (_BAR + 24)
-            for mark, value in (("warn", warn), ("error", error)):
-                label = f"^ {mark} {value:.0f} %"
-                place = round(value / top * _BAR)
-                scale[place : place + len(label)] = label
-            lines.append(f"  {'':15}  {''.join(scale).rstrip()}")
+            # The mark of the lower limit has its label on the left, that of the higher one on the right.
+            place = round(warn / top * _BAR)
+            scale = f"warn {warn:.0f} % ^".rjust(place + 1)
+            gap = round(error / top * _BAR) - len(scale)
+            scale += " " * gap + f"^ error {error:.0f} %" if gap >= 0 else ""
+            lines.append(f"  {'':15}  {scale}")
         lines = [line[:width] for line in lines]
         text = textwrap.wrap(view.message, width - 11)[:4] or [""]
         lines.append(f"  {self.colour(view.word)}{'':{6 - len(view.word)}} {text[0]}")

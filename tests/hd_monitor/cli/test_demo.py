@@ -138,12 +138,3 @@ def test_the_users_domain_is_used(start_module: Start) -> None:
     demo = start_module(COMMAND, "demo", "--domain", domain, "--seconds", "5", "--time-scale", "10")
     demo.wait()
     assert f"ROS_DOMAIN_ID={domain}" in demo.output
-
-
-def test_free_domains_are_free(peer: Any) -> None:
-    from hd_monitor.cli.demo import free_domain
-
-    mine = int(os.environ["ROS_DOMAIN_ID"])
-    domains = {free_domain() for _ in range(50)}
-    assert mine not in domains
-    assert domains <= set(range(1, 102))

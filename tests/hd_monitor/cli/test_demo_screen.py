@@ -92,9 +92,10 @@ def test_marks_of_the_limits_stand_below_their_places(monkeypatch: pytest.Monkey
     Screen(out).update(view(), 1.0)
     lines = out.getvalue().splitlines()
     bar = next(line for line in lines if line.startswith("  flexspline"))
-    marks = next(line for line in lines if "^ warn" in line)
+    marks = next(line for line in lines if "warn 5 % ^" in line)
     start = bar.index("█")
     assert marks.index("^ error") - start == 15  # 8 % of the 16 % that the bar of 30 shows
+    assert marks.index("^") - start == 9  # and 5 %
     assert bar[marks.index("^ error")] == "█"  # 10.31 % lies beyond it
 
 
