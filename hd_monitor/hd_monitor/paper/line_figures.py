@@ -193,7 +193,7 @@ def equation_5(cases: Cases) -> Exhibit:
             )
         )
         curves += [
-            Curve(x=speeds, y=np.asarray(measured), label=f"measured, k = {k}", style="points"),
+            Curve(x=speeds, y=np.asarray(measured), label="measured" if k == 1 else "", style="points"),
             Curve(x=speeds, y=k * speeds / 30.0 * (z2_to_z1 - 1.0), label=f"eq. 5, k = {k}"),
         ]
     return Exhibit(

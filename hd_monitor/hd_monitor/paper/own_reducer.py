@@ -9,10 +9,11 @@ from ..model import growth_rate, line_pairs
 from .cases import Case
 from .exhibit import Exhibit
 from .line_figures import REVOLUTIONS, bispectra_panels
+from .phase_figure import phase_panel, strobe_panel
 from .property_figures import curve_panel, property_curve
 from .records import steady_record
 from .reproduction import compute, select
-from .rig_figures import beat_panel, phase_panel, strobe_panel
+from .rig_figures import beat_panel
 from .stability_figure import chart_panel
 from .stiffness_figures import static_measurement, static_panel, stiffness_panels
 from .sweep_figures import sweep_panel, sweep_response

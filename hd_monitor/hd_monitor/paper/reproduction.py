@@ -8,6 +8,7 @@ from ..errors import ParameterError
 from . import (
     group_figures,
     line_figures,
+    phase_figure,
     property_figures,
     reassembly_figures,
     rig_figures,
@@ -47,7 +48,7 @@ EXHIBITS = (
     Entry("F14", "combined group on the rig", group_figures.figure_14),
     Entry("F15", "spectrum at 1700 rpm", rig_figures.figure_15),
     Entry("F16", "property curve of the rig", property_figures.figure_16),
-    Entry("F17", "phase trace at 850 rpm", rig_figures.figure_17),
+    Entry("F17", "phase trace at 850 rpm", phase_figure.figure_17),
     Entry("F18a", "property curve and verdict before", reassembly_figures.figure_18a),
     Entry("F18b", "property curve and verdict after", reassembly_figures.figure_18b),
     Entry("F19", "pitch errors before and after", reassembly_figures.figure_19),

@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import maximum_filter1d
 
 from ..model import growth_rate
 from ..model.parameters import FloatArray
@@ -29,7 +28,7 @@ _SEED_NOTE = (
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class SweepResponse:
-    """Envelope of |θ − M0/Kav| [rad] over the circular spline's line ωo2/2π [Hz], both of shape (samples,)."""
+    """Envelope of |θ − M0/Kav| [rad] over the circular spline's line ωo2/2π [Hz], both of shape (points,)."""
 
     frequency: FloatArray
     envelope: FloatArray
@@ -58,18 +57,20 @@ def sweep_response(case: Case, rate: float | None = None) -> SweepResponse:
         model, linear_sweep(model.reducer, sweep.start, sweep.rate), duration=sweep.duration, rate=sampling
     )
     deviation = np.abs(response.displacement - model.torque.mean / model.dynamics.stiffness)
-    # One natural period holds a maximum of every vibration near resonance
-    window = max(1, round(sampling / model.dynamics.natural_frequency))
+    frequency = sweep.start + sweep.rate * response.times
+    # The largest value in each cycle of the line or of the natural vibration, whichever is slower
+    slower = np.minimum(frequency, model.dynamics.natural_frequency)
+    cycle = np.floor(np.cumsum(slower) / sampling)
+    starts = np.concatenate([[0], np.flatnonzero(np.diff(cycle)) + 1])
     return SweepResponse(
-        frequency=sweep.start + sweep.rate * response.times,
-        envelope=maximum_filter1d(deviation, window),
+        frequency=frequency[starts],
+        envelope=np.maximum.reduceat(deviation, starts),
         natural_frequency=model.dynamics.natural_frequency,
     )
 
 
 def sweep_panel(case: Case, response: SweepResponse, title: str) -> Panel:
     """Draw an envelope as figures 10 and 11 do."""
-    thin = max(1, response.frequency.size // 6000)
     fn = response.natural_frequency
     marks = [(0.5, "fn/2"), (1.0, "fn"), (2.0, "2 fn")]
     return Panel(
@@ -78,8 +79,8 @@ def sweep_panel(case: Case, response: SweepResponse, title: str) -> Panel:
         y_label="envelope of |θ − M0/Kav| (rad)",
         curves=(
             Curve(
-                x=response.frequency[::thin],
-                y=response.envelope[::thin],
+                x=response.frequency,
+                y=response.envelope,
                 style="fine" if case.model.circular_spline.beta else "line",
             ),
         ),
