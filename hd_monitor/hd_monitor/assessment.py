@@ -46,6 +46,9 @@ class Assessment:
         The vibration of the last period with its motion.
     joint_samples : JointSamples or None
         The joint states of the last period; None if it had none.
+    torque_source : str
+        Where the transmitted torque came from: ``effort``, ``parameter``, ``assumed`` (the parameter stands in for
+        efforts that are not measured) or ``unknown``.
     extra : tuple of (str, str)
         Further keys and values for the status.
     """
@@ -62,6 +65,7 @@ class Assessment:
     travel_needed: float
     warn_limit: float
     error_limit: float
+    torque_source: str = "unknown"
     records: tuple[Record, ...] = ()
     joint_samples: JointSamples | None = None
     extra: tuple[tuple[str, str], ...] = ()

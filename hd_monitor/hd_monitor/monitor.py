@@ -66,7 +66,7 @@ class Monitor:
         needed = (self._motion,) if settings.sensorless else (self._vibration, self._motion)
         self._timeline = Timeline(needed, self._period, self._timeout)
         self._recorder = Recorder(settings)
-        self._sequence: int | None = None
+        self._block: Block | None = None
         self._seen: dict[str, int] = {}
         self._useful = 0
         self._latest: Assessment | None = None
@@ -87,11 +87,15 @@ class Monitor:
         self._vibration.add(np.asarray(stamps, dtype=np.int64), np.asarray(values, dtype=np.float64).reshape(-1, 1))
 
     def add_block(self, block: Block) -> None:
-        """Add a block of samples of θ''; one whose number has just been seen is a duplicate and is dropped."""
-        if block.sequence == self._sequence:
-            self._recorder.count(duplicates=len(block.samples), last_fault=f"block {block.sequence} came twice")
+        """Add a block of samples of θ''; one with number and stamp of the last one is a duplicate and is dropped."""
+        last = self._block
+        self._block = block
+        if last is not None and (block.sequence, block.stamp) == (last.sequence, last.stamp):
+            if np.array_equal(block.samples, last.samples, equal_nan=True):
+                self._recorder.count(duplicates=len(block.samples), last_fault=f"block {block.sequence} came twice")
+            else:
+                self.reject(f"two different blocks have the number {block.sequence}: are there two publishers?")
             return
-        self._sequence = block.sequence
         offsets = np.rint(np.arange(len(block.samples)) * (block.period * NANOSECONDS)).astype(np.int64)
         self.add_vibration(block.stamp + offsets, block.samples)
 
@@ -187,6 +191,9 @@ class Monitor:
             verdict = self._unusable()
         else:
             verdict = self._judge.judge(evidence, self._missing(harvest))
+            if evidence is not None and self._recorder.torque_source == "assumed":
+                note = f"no effort was measured: the torque is taken to be {self.settings['load.torque']:g} N·m"
+                verdict = replace(verdict, reason=f"{verdict.reason}; {note}")
         speed, rms = self._speed(harvest), self._level(harvest.vibration)
         assessment = replace(
             self._pack(end, verdict, speed, rms), records=harvest.records, joint_samples=harvest.joint_samples
@@ -287,4 +294,5 @@ class Monitor:
             travel_needed=self._reducer.travel_to_separate(1),
             warn_limit=limits.warn,
             error_limit=limits.error,
+            torque_source=self._recorder.torque_source,
         )

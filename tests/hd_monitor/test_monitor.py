@@ -200,6 +200,19 @@ def test_lost_repeated_and_swapped_blocks_are_counted_and_survived(recording: Re
     assert assessment.verdict.component is Component.FLEXSPLINE
 
 
+def test_a_publisher_that_numbers_no_blocks_loses_none(recording: Recording) -> None:
+    blocks = [block._replace(sequence=0) for block in recording.blocks()]
+    assert latest(run(recording, blocks)).quality == latest(run(recording)).quality
+
+
+def test_two_publishers_of_one_topic_are_noticed(recording: Recording) -> None:
+    blocks = [twin for block in recording.blocks() for twin in (block, block._replace(samples=-block.samples))]
+    assessment = latest(run(recording, blocks))
+    assert assessment.quality.rejected == len(recording.blocks())
+    assert "two publishers" in assessment.quality.last_fault
+    assert assessment.verdict.component is Component.FLEXSPLINE
+
+
 def test_a_stuck_sensor_gives_no_verdict(recording: Recording) -> None:
     blocks = [block._replace(samples=np.full(BLOCK, 0.25)) for block in recording.blocks()]
     assessment = latest(run(recording, blocks))
@@ -252,7 +265,9 @@ def test_efforts_of_zero_are_no_measurement(recording: Recording) -> None:
     monitor.finish()
     found = latest(monitor).identification
     assert found is not None
-    assert not found.relative  # load.torque stands in
+    assert not found.relative  # load.torque stands in, and the status says so
+    assert latest(monitor).torque_source == "assumed"
+    assert "taken to be 10 N·m" in latest(monitor).verdict.reason
     assert latest(monitor).verdict.component is Component.FLEXSPLINE
 
 

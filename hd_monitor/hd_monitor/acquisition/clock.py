@@ -91,11 +91,13 @@ def recover_clock(times: npt.NDArray[np.float64], period: float | None = None) -
 
 def _settle(number: npt.NDArray[np.int64], t: npt.NDArray[np.float64]) -> npt.NDArray[np.int64]:
     """Renumber stamps by the line through them until nothing changes."""
+    half = t.size // 2
     for _ in range(_REFINEMENTS):
-        slope = float(np.median(np.diff(t) / np.diff(number)))
-        middle = float(np.median(t - slope * number))
-        start, fitted = _line(number, t) if np.ptp(t - middle - slope * number) < slope else (middle, slope)
-        places = np.rint((t - start) / fitted).astype(np.int64)
+        start, slope = _line(number, t)
+        if np.abs(t - start - slope * number).max() > 0.5 * slope:  # some are out of place: a robust line instead
+            slope = float(np.median((t[half:] - t[: t.size - half]) / (number[half:] - number[: t.size - half])))
+            start = float(np.median(t - slope * number))
+        places = np.rint((t - start) / slope).astype(np.int64)
         places -= places[0]
         if np.array_equal(places, number) or (np.diff(places) < 1).any():
             break

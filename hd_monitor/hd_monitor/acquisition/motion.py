@@ -12,6 +12,7 @@ FloatArray = npt.NDArray[np.float64]
 
 _LARGEST_HOLE = 0.25  # s; a joint can change its speed within that in ways that no interpolation knows
 _HOLE_PERIODS = 5.0
+_ENOUGH_EFFORT = 0.5  # of the messages: torque is slow, so that single missing efforts are bridged
 _FEWEST_TO_EVEN = 16  # messages
 _JITTER_NOTICED = 20e-6  # s
 _CLEARLY_BETTER = 0.5  # of the squared contradiction between position and velocity
@@ -118,7 +119,9 @@ class MotionTrack:
         angle = CubicHermiteSpline(known, rows[:, 0], velocity, extrapolate=False)(times)
         speed = np.interp(times, known, velocity)
         effort = rows[:, 2]
-        torque = np.interp(times, known, effort) if np.isfinite(effort).all() else unknown.copy()
+        measured = np.isfinite(effort)
+        enough = int(measured.sum()) >= max(2, _ENOUGH_EFFORT * effort.size)
+        torque = np.interp(times, known[measured], effort[measured]) if enough else unknown.copy()
         limit = min(_LARGEST_HOLE, _HOLE_PERIODS * float(np.median(steps)) + 0.02)
         place = np.searchsorted(known, times, side="right")
         outside = (times < known[0]) | (times > known[-1])

@@ -66,6 +66,7 @@ class Recorder:
         self._grid: _Grid | None = None
         self._joined = False
         self.quality = Quality()
+        self.torque_source = "unknown"
 
     def cut(self) -> None:
         """Start anew: what follows belongs to another time base."""
@@ -202,9 +203,12 @@ class Recorder:
         known = np.isfinite(effort)
         measured = bool(known.any()) and bool((effort[known] != 0.0).any())
         if self._load_source in ("auto", "effort") and measured:
+            self.torque_source = "effort"
             return effort
         if self._load_source in ("auto", "parameter") and self._load_torque != 0.0:
+            self.torque_source = "parameter" if self._load_source == "parameter" else "assumed"
             return np.full(effort.size, self._load_torque)
+        self.torque_source = "unknown"
         return np.full(effort.size, math.nan)
 
     def _hole(self, lost: int) -> None:

@@ -6,6 +6,7 @@ that makes a replay equal to the live run.
 
 from collections import deque
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -18,7 +19,13 @@ LATENESS = 50_000_000
 """A sample may come this long [ns] after a later one and is still sorted in."""
 
 CLOCK_JUMP = 1_000_000_000
-"""A stamp further back than this [ns] is a clock that was set back, not a late message."""
+"""A stamp further back than this [ns] is astray or a clock that was set back, not a late message."""
+
+LEAP = 10_000_000_000
+"""A stamp further ahead than this [ns] is astray or the end of a long pause."""
+
+TRUSTED = 1_000_000_000
+"""Stamps elsewhere are believed once they have gone on for this long [ns]; until then they may be astray."""
 
 
 class Samples(NamedTuple):
@@ -54,6 +61,7 @@ class StampedBuffer:
     def __init__(self, columns: int) -> None:
         self._columns = columns
         self._epochs: deque[_Epoch] = deque([_Epoch()])
+        self._suspects: list[Samples] = []
         self.late = 0
         self.disordered = 0
         self.jumps = 0
@@ -62,21 +70,44 @@ class StampedBuffer:
         """Append samples: stamps [ns] of shape (N,), values of shape (N, columns)."""
         if not stamps.size:
             return
-        epoch = self._epochs[-1]
-        newest = epoch.newest if epoch.newest is not None else int(stamps[0])
-        if int(stamps[0]) >= newest and (stamps.size == 1 or bool((stamps[1:] >= stamps[:-1]).all())):
-            self._append(epoch, stamps, values)  # the common case: everything in order
+        steps = np.diff(stamps)
+        first, newest = int(stamps[0]), self._epochs[-1].newest
+        near = newest is None or newest <= first <= newest + LEAP
+        if near and not self._suspects and (not steps.size or (steps.min() >= 0 and steps.max() <= LEAP)):
+            self._append(self._epochs[-1], stamps, values)  # the common case: everything in order
             return
+        bounds = [0, *(np.flatnonzero(np.abs(steps) > CLOCK_JUMP) + 1).tolist(), stamps.size]
+        for start, stop in pairwise(bounds):
+            self._add_piece(Samples(stamps[start:stop], values[start:stop]))
+
+    def _add_piece(self, piece: Samples) -> None:
+        """Append samples without a leap among them: one stray stamp must not throw the clock over."""
+        epoch, first = self._epochs[-1], int(piece.stamps[0])
+        if epoch.newest is None or -CLOCK_JUMP <= first - epoch.newest <= LEAP:
+            if self._suspects:  # the clock is back where it was: what leapt was astray
+                self.jumps += 1
+                self.late += sum(suspect.stamps.size for suspect in self._suspects)
+                self._suspects.clear()
+            self._append_in_time(epoch, piece)
+            return
+        last = int(self._suspects[-1].stamps[-1]) if self._suspects else first
+        if not -CLOCK_JUMP <= first - last <= LEAP:
+            self.late += sum(suspect.stamps.size for suspect in self._suspects)
+            self._suspects.clear()
+        self._suspects.append(piece)
+        if int(piece.stamps[-1]) - int(self._suspects[0].stamps[0]) >= TRUSTED:
+            suspects, self._suspects = self._suspects, []
+            if first < epoch.newest:
+                self.jumps += 1
+                self._epochs.append(_Epoch())
+            for suspect in suspects:
+                self._append_in_time(self._epochs[-1], suspect)
+
+    def _append_in_time(self, epoch: _Epoch, piece: Samples) -> None:
+        stamps, values = piece
+        newest = epoch.newest if epoch.newest is not None else int(stamps[0])
         before = np.maximum.accumulate(np.concatenate([[newest], stamps]))[:-1]
         behind = before - stamps
-        back = np.flatnonzero(behind > CLOCK_JUMP)
-        if back.size:
-            first = int(back[0])
-            self.add(stamps[:first], values[:first])
-            self.jumps += 1
-            self._epochs.append(_Epoch())
-            self.add(stamps[first:], values[first:])
-            return
         keep = behind <= LATENESS
         self.late += int(stamps.size - keep.sum())
         self.disordered += int((behind[keep] > 0).sum())

@@ -107,6 +107,11 @@ class Judge:
             shown = now
         elif shown is None:
             shown = self._undetermined(f"{now.reason} (to be confirmed: {count} of {self._limits.confirm_count})")
+        else:  # held until the new verdict is confirmed; the sentence speaks of the evidence of now all the same
+            held = replace(
+                shown, reason=f"{now.reason} (held: {count} of {self._limits.confirm_count} verdicts say so)"
+            )
+            return self._latch(held)
         self._shown = shown
         return self._latch(shown)
 

@@ -75,3 +75,11 @@ def test_jitter_of_stamps_is_taken_off(seed: int, jitter: float) -> None:
 def test_truly_uneven_sampling_keeps_its_stamps(seed: int, unevenness: float) -> None:
     sampled = np.sort(np.arange(100) * 0.01 + np.random.default_rng(seed).normal(0.0, unevenness, 100))
     assert np.array_equal(even_stamps(sampled, moving(sampled)), sampled)
+
+
+def test_single_missing_efforts_are_bridged() -> None:
+    times = np.arange(0.0, 1.0, 0.01)
+    effort = 5.0 + times
+    effort[::3] = np.nan
+    torque = fed(times, np.column_stack([times, np.ones_like(times), effort])).at(times[2:-3]).torque
+    assert np.allclose(torque, 5.0 + times[2:-3])

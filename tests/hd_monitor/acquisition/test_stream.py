@@ -46,9 +46,9 @@ def test_a_sample_in_time_is_kept_and_a_late_one_dropped() -> None:
     assert buffer.take(2**62).stamps.size == 2
 
 
-@given(chunk=st.integers(1, 7))
+@given(chunk=st.integers(1, 130))
 def test_a_clock_set_back_opens_a_new_time_base(chunk: int) -> None:
-    before, after = [9 * CLOCK_JUMP, 9 * CLOCK_JUMP + MS], [0, MS, 2 * MS]
+    before, after = [100 * CLOCK_JUMP, 100 * CLOCK_JUMP + MS], [20 * MS * i for i in range(120)]
     buffer = buffer_of(before + after, chunk)
     assert buffer.jumps == 1
     assert buffer.jumped
@@ -56,6 +56,23 @@ def test_a_clock_set_back_opens_a_new_time_base(chunk: int) -> None:
     buffer.pass_jump()
     assert not buffer.jumped
     assert buffer.take(2**62).stamps.tolist() == after
+
+
+@given(place=st.integers(1, 118), leap=st.sampled_from([-3600, -5, 3600, 86400 * 365]), chunk=st.integers(1, 130))
+def test_a_stray_stamp_is_dropped_and_nothing_else(place: int, leap: int, chunk: int) -> None:
+    stamps = [4000 * CLOCK_JUMP + 20 * MS * i for i in range(120)]
+    astray = [*stamps[:place], stamps[place] + leap * CLOCK_JUMP, *stamps[place + 1 :]]
+    buffer = buffer_of(astray, chunk)
+    assert (buffer.jumps, buffer.late, buffer.jumped) == (1, 1, False)
+    assert buffer.take(2**62).stamps.tolist() == stamps[:place] + stamps[place + 1 :]
+
+
+@given(chunk=st.integers(1, 130))
+def test_a_long_pause_loses_nothing(chunk: int) -> None:
+    stamps = [(0 if i < 60 else 7200 * 10**9) + 20 * MS * i for i in range(120)]
+    buffer = buffer_of(stamps, chunk)
+    assert (buffer.jumps, buffer.late) == (0, 0)
+    assert buffer.take(2**62).stamps.tolist() == stamps
 
 
 def test_the_earliest_sample_can_be_seen_without_taking_it() -> None:

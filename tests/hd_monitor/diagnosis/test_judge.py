@@ -92,6 +92,15 @@ def test_a_change_needs_confirmation_and_a_single_outlier_changes_nothing() -> N
     assert judge.judge(evidence(0.01, 0.10), "").component is Component.FLEXSPLINE  # 3 of the last 5
 
 
+def test_while_a_verdict_is_held_its_words_follow_the_evidence() -> None:
+    judge = Judge(replace(LIMITS, confirm_count=2, confirm_window=3))
+    settled(judge, evidence(0.01, 0.02))
+    held = judge.judge(evidence(0.01, 0.10), "")
+    assert held.component is Component.NONE
+    assert "10.0 %" in held.reason
+    assert "held" in held.reason
+
+
 def test_hysteresis_keeps_an_alarm_until_the_index_is_clearly_below_the_limit() -> None:
     judge = Judge(LIMITS)
     assert settled(judge, evidence(0.01, 0.049)).component is Component.NONE
