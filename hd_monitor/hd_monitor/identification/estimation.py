@@ -82,7 +82,7 @@ class Estimation:
         self._predictor: Predictor | None = None
         self._nominal_torque: float | None = None
         self._values = u.zero()
-        self._active = u.mask(u.stiffness, u.load)
+        self._active = u.mask(u.stiffness, u.load, u.inertia)
         self._recent: list[Stretch] = []
         self._fitted_anew = 0.0
         self._floor: NoiseFloor | None = None
@@ -293,6 +293,7 @@ def _given_std(unknowns: Unknowns) -> FloatArray:
     std[unknowns.damping] = 0.5
     std[unknowns.torque] = 1.5
     std[unknowns.delay] = 0.01
+    std[unknowns.inertia] = 0.7
     return std
 
 

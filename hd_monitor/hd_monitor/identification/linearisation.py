@@ -99,7 +99,8 @@ class _Along:
         self._load_unit = predictor.reference_torque / predictor.given.inertia
         self._torque = math.exp(values[unknowns.torque]) / predictor.given.inertia * path.torque
         self.stiffness = np.asarray(1.0 + self._lines @ self._beta)
-        self.drive = np.asarray(self._torque + self._load_unit * (path.loads @ values[unknowns.load]))
+        inertial = values[unknowns.inertia] * path.acceleration
+        self.drive = np.asarray(self._torque + self._load_unit * (path.loads @ values[unknowns.load]) - inertial)
 
     def forcing(self, theta: FloatArray, theta_dot: FloatArray) -> FloatArray:
         """Inputs [rad/s² per unit of each unknown] where θ and θ' are as given, shape (..., unknowns)."""
@@ -113,6 +114,7 @@ class _Along:
         forcing[..., unknowns.frequency] = friction + 2.0 * spring * self.stiffness
         forcing[..., unknowns.damping] = friction
         forcing[..., unknowns.torque] = self._torque
+        forcing[..., unknowns.inertia] = -path.acceleration
         # d cos = -sin, d(-sin) = -cos: the other column of the pair, with its sign
         cosine, other = path.quadrature(self._lines)
         forcing[..., unknowns.delay] = (

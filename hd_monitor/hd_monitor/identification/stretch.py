@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -12,6 +13,7 @@ from ..acquisition.record import Record
 from ..model.oscillator import GAUSS_OFFSETS
 from ..reducer import Reducer
 from .conditioning import condition
+from .drive import own_acceleration, smooth_torque
 
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
@@ -39,8 +41,8 @@ class Path:
         cos and -sin of the load angles.
     torque : ndarray, shape S
         Known torque [N·m].
-    speed : ndarray, shape S
-        Output speed [rad/s].
+    speed, acceleration : ndarray, shape S
+        Output speed [rad/s] and its derivative [rad/s²].
     """
 
     lines: FloatArray
@@ -48,6 +50,7 @@ class Path:
     loads: FloatArray
     torque: FloatArray
     speed: FloatArray
+    acceleration: FloatArray
 
     def lines_after(self, delay: float) -> FloatArray:
         """Return `lines` at the angle that the output has `delay` [s] later."""
@@ -166,7 +169,7 @@ class StretchBuilder:
     natural_frequency : float
         [Hz]; together with the lines' frequencies it sets the sampling rate that is needed and the integration step.
     inertial : bool
-        Whether the sensor also feels gravity and the joint's own acceleration, as an IMU does.
+        Whether the sensor also feels gravity, as an IMU does.
     """
 
     reducer: Reducer
@@ -198,8 +201,9 @@ class StretchBuilder:
         steps = self._substeps(line, step)
         nodes = np.append(np.arange((angle.size - 1) * steps) / steps, angle.size - 1.0)
         gauss = np.stack([nodes[:-1] + c / steps for c in GAUSS_OFFSETS])
-        if torque is not None:
-            measured = np.full(angle.size, torque)
+        own = own_acceleration(speed, step)
+        known = np.full(angle.size, torque) if torque is not None else smooth_torque(measured, angle, speed, own, step)
+        motion = _Motion(angle, speed, own, known, step)
         return Stretch(
             start=records[0].start + signal.first * period,
             period=step,
@@ -208,9 +212,9 @@ class StretchBuilder:
             angle=angle,
             speed=speed,
             substeps=steps,
-            at_steps=self._path(angle, speed, step, measured, nodes),
-            at_gauss=self._path(angle, speed, step, measured, gauss),
-            slow=self._slow(angle, speed, signal.used, step),
+            at_steps=self._path(motion, nodes),
+            at_gauss=self._path(motion, gauss),
+            slow=self._slow(motion, signal.used),
             highest_frequency=signal.highest_frequency,
             raw_samples=int(np.isfinite(raw).sum()),
             outliers=signal.outliers,
@@ -220,8 +224,8 @@ class StretchBuilder:
         fastest = math.tau * max(FREQUENCY_MARGIN * self.natural_frequency, 0.7 * line)
         return max(1, math.ceil(fastest * step / LARGEST_PHASE_STEP))
 
-    def _path(self, angle: FloatArray, speed: FloatArray, step: float, torque: FloatArray, places: FloatArray) -> Path:
-        q = _hermite(angle, speed * step, places)
+    def _path(self, motion: "_Motion", places: FloatArray) -> Path:
+        q = _hermite(motion.angle, motion.speed * motion.step, places)
         lines = np.empty((*q.shape, 4 * self.harmonics))
         rates = np.empty(4 * self.harmonics)
         for spline, order in enumerate(self.reducer.output_orders):
@@ -237,22 +241,35 @@ class StretchBuilder:
             lines=lines,
             rates=rates,
             loads=np.concatenate([np.cos(phases), -np.sin(phases)], axis=-1),
-            torque=_linear(torque, places),
-            speed=_linear(speed, places),
+            torque=_linear(motion.torque, places),
+            speed=_linear(motion.speed, places),
+            acceleration=_linear(motion.acceleration, places),
         )
 
-    def _slow(self, angle: FloatArray, speed: FloatArray, used: BoolArray, period: float) -> FloatArray:
-        """Directions below about 1 Hz, and for an inertial sensor gravity and the joint's own acceleration."""
-        degree = _slow_degree(angle.size * period)
-        columns = np.polynomial.legendre.legvander(np.linspace(-1.0, 1.0, angle.size), degree)
+    def _slow(self, motion: "_Motion", used: BoolArray) -> FloatArray:
+        """Directions below about 1 Hz, the joint's own acceleration, and for an inertial sensor gravity."""
+        size = motion.angle.size
+        degree = _slow_degree(size * motion.step)
+        parts = [np.polynomial.legendre.legvander(np.linspace(-1.0, 1.0, size), degree)]
+        if float(np.ptp(motion.acceleration)) > 0.0:
+            parts.append(motion.acceleration[:, None])
         if self.inertial:
-            own = np.stack([np.cos(angle), np.sin(angle), np.gradient(speed, period)], axis=1)
-            columns = np.concatenate([columns, own], axis=1)
-        columns = columns * used[:, None]
+            parts.append(np.stack([np.cos(motion.angle), np.sin(motion.angle)], axis=1))
+        columns = np.concatenate(parts, axis=1) * used[:, None]
         columns /= np.linalg.norm(columns, axis=0) + 1e-300
         squares, directions = np.linalg.eigh(columns.T @ columns)
         kept = squares > 1e-10 * squares[-1]
         return np.asarray(columns @ (directions[:, kept] / np.sqrt(squares[kept])))
+
+
+class _Motion(NamedTuple):
+    """The motion at the samples: output angle, speed and acceleration, known torque, and the sample period."""
+
+    angle: FloatArray
+    speed: FloatArray
+    acceleration: FloatArray
+    torque: FloatArray
+    step: float
 
 
 def _slow_degree(duration: float) -> int:

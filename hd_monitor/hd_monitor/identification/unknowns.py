@@ -18,8 +18,9 @@ class Unknowns:
 
     In this order: real parts of the circular spline's β phasors (one a harmonic), their imaginary parts, the same of
     the flexspline, real parts of the load phasors (one an order; in units of the reference torque), their imaginary
-    parts; then the logarithms of natural frequency, damping ratio and torque relative to the given ones, and the time
-    [s] by which the motion's stamps lag behind the vibration's.
+    parts; then the logarithms of natural frequency, damping ratio and torque relative to the given ones, the time [s]
+    by which the motion's stamps lag behind the vibration's, and the part of the inertia whose own acceleration winds
+    up the reducer beside the known torque.
 
     Attributes
     ----------
@@ -73,9 +74,14 @@ class Unknowns:
         return self.frequency + 3
 
     @property
+    def inertia(self) -> int:
+        """Place of the part of the inertia that the known torque leaves out."""
+        return self.frequency + 4
+
+    @property
     def size(self) -> int:
         """Number of unknowns."""
-        return self.frequency + 4
+        return self.frequency + 5
 
     def zero(self) -> FloatArray:
         """Return the vector of a healthy reducer with all that is given taken as right."""
