@@ -56,11 +56,11 @@ class _Channel:
         for assessment in self.monitor.advance():
             yield Replayed(plan=self.plan, assessment=assessment)
 
-    def finish(self) -> Iterator[Replayed]:
-        """Yield what a node would show at the end; nothing if it would show nothing."""
-        assessment = self.monitor.finish()
-        if assessment is not None:
-            yield Replayed(plan=self.plan, assessment=assessment, last=True)
+    def finish(self) -> Replayed:
+        """Return what a node would show at the end."""
+        # Without any usable input the monitor has nothing to assess, but knows what it had to reject.
+        assessment = self.monitor.finish() or self.monitor.silence((self._heard or 0) + self._timeout)
+        return Replayed(plan=self.plan, assessment=assessment, last=True)
 
 
 def replay(bag: Bag, plans: Sequence[JointPlan], progress: Progress | None = None) -> Iterator[Replayed]:
@@ -88,4 +88,4 @@ def replay(bag: Bag, plans: Sequence[JointPlan], progress: Progress | None = Non
         if progress is not None:
             progress(window)
     for channel in channels:
-        yield from channel.finish()
+        yield channel.finish()

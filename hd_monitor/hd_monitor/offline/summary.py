@@ -21,8 +21,8 @@ def summarise(result: JointResult) -> str:
         index, std = found.index, found.index_std
         lines += [
             f"  flexspline {kind} {_percent(index.flexspline, std.flexspline)}, "
-            f"circular spline {_percent(index.circular_spline, std.circular_spline)}; "
-            f"limits {100 * last.warn_limit:g} % and {100 * last.error_limit:g} %",
+            f"circular spline {_percent(index.circular_spline, std.circular_spline)}"
+            + ("" if found.relative else f"; limits {100 * last.warn_limit:g} % and {100 * last.error_limit:g} %"),
             f"  from {math.degrees(found.travel):.0f}° of travel, signal to noise {found.signal_to_noise:.0f} dB",
         ]
     quality = last.quality
@@ -39,9 +39,8 @@ def summarise(result: JointResult) -> str:
         "rejected": quality.rejected,
     }
     wrong = ", ".join(f"{name} {count}" for name, count in faults.items() if count) or "no faults in the data"
-    lines.append(
-        f"  {quality.samples} samples at {quality.rate:.1f} Hz, {quality.motion_messages} joint states; {wrong}"
-    )
+    samples = "" if result.plan.settings.sensorless else f"{quality.samples} samples at {quality.rate:.1f} Hz, "
+    lines.append(f"  {samples}{quality.motion_messages} joint states; {wrong}")
     lines += [f"  note: {note}" for note in result.plan.notes]
     return "\n".join(lines)
 

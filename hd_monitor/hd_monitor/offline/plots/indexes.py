@@ -15,13 +15,18 @@ _LEVEL_COLOURS = ("#56B4E9", WARN_COLOUR, ERROR_COLOUR)
 _LEVEL_HATCHES = ("", "///", "xxx")
 
 
-def indexes_plot(timeline: Sequence[Mapping[str, Any]], *, warn: float, error: float, title: str) -> Figure:
-    """Draw the timeline of a replay's JSON: both indexes [%] with their 95 % bands over time [s], level below."""
+def indexes_plot(
+    timeline: Sequence[Mapping[str, Any]], *, warn: float, error: float, relative: bool, title: str
+) -> Figure:
+    """Draw the timeline of a replay's JSON: both indexes [%] with their 95 % bands over time [s], level below.
+
+    The limits apply to indexes that are not relative only.
+    """
     first = timeline[0]["stamp"]
     seconds = np.array([(entry["stamp"] - first) / 1e9 for entry in timeline])
     with new_figure((8.0, 4.6)) as figure:
         axes, below = figure.subplots(2, 1, sharex=True, height_ratios=(8, 1))
-        highest = error
+        highest = 0.0 if relative else error
         for look, name in ((CIRCULAR_SPLINE, "circular_spline_index"), (FLEXSPLINE, "flexspline_index")):
             value, std = _numbers(timeline, name), _numbers(timeline, f"{name}_std")
             low, high = 100 * np.maximum(value - _BANDS * std, 0.0), 100 * (value + _BANDS * std)
@@ -33,9 +38,10 @@ def indexes_plot(timeline: Sequence[Mapping[str, Any]], *, warn: float, error: f
             settled = value[np.isfinite(value)]
             if settled.size:
                 highest = max(highest, float(settled.max()), float((value + std)[np.isfinite(value)][-1]))
-        limits(axes, warn, error)
-        axes.set_ylim(0.0, 115.0 * highest)
-        axes.set_ylabel("stiffness index [%]")
+        if not relative:
+            limits(axes, warn, error)
+        axes.set_ylim(0.0, 115.0 * max(highest, 1e-6))
+        axes.set_ylabel("relative index [%]" if relative else "stiffness index [%]")
         axes.set_title(title)
         legend_above(axes)
         _levels(below, seconds, [int(entry["level"]) for entry in timeline])

@@ -26,7 +26,7 @@ from .spectra import amplitude_spectrum, order_spectrum
 _ORDERS_SHOWN = 1201
 _FEWEST_SPEEDS = 3
 """Speeds from which on something is drawn over speed."""
-_UNITS = {"joint_effort": "N·m", "joint_velocity": "rad/s"}
+_UNITS = {"joint_effort": "effort, as reported", "joint_velocity": "rad/s"}
 
 
 class Picture(NamedTuple):
@@ -155,7 +155,7 @@ def _indexes(last: Assessment, timeline: list[dict[str, Any]], collector: Collec
         return None
     relative = bool(last.identification and last.identification.relative)
     title = "Relative indexes over time" if relative else "Stiffness indexes over time"
-    return indexes_plot(timeline, warn=last.warn_limit, error=last.error_limit, title=title)
+    return indexes_plot(timeline, warn=last.warn_limit, error=last.error_limit, relative=relative, title=title)
 
 
 def _phase(last: Assessment, timeline: list[dict[str, Any]], collector: Collector) -> Figure | None:
