@@ -1,0 +1,76 @@
+"""The pages of msgs_doc say what the code does."""
+
+import re
+from pathlib import Path
+
+import pytest
+from hd_monitor import contract
+from hd_monitor.diagnosis.status import status_of
+from hd_monitor.diagnosis.verdict import Component, FaultCode
+from hd_monitor.monitor import Monitor
+from hd_monitor.settings import JointSettings
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGES = ROOT / "msgs_doc"
+DIAGNOSTICS = (PAGES / "diagnostics.md").read_text(encoding="utf-8")
+TOPICS = (PAGES / "topics.md").read_text(encoding="utf-8")
+
+
+def documented_keys() -> list[str]:
+    table = DIAGNOSTICS.partition("## Values")[2].partition("## Fault codes")[0]
+    cells = [line.split("|")[1] for line in table.splitlines() if line.startswith("| `")]
+    return [key for cell in cells for key in re.findall(r"`([^`]+)`", cell)]
+
+
+def test_every_key_of_a_status_is_documented_in_its_order() -> None:
+    settings = JointSettings.from_mapping()
+    status = status_of(Monitor("joint", settings).silence(0), "joint", settings)
+    keys = [key for key, _ in status.values]
+    documented = documented_keys()
+    assert set(keys) == set(documented) - {"internal errors"}
+    assert [key for key in keys if "std" not in key] == [
+        key for key in documented if "std" not in key and key != "internal errors"
+    ]
+
+
+@pytest.mark.parametrize("code", list(FaultCode))
+def test_every_fault_code_is_documented(code: FaultCode) -> None:
+    assert f"`{code.value}`" in DIAGNOSTICS.partition("## Fault codes")[2]
+
+
+@pytest.mark.parametrize("component", list(Component))
+def test_every_component_is_documented(component: Component) -> None:
+    assert f"`{component.value}`" in DIAGNOSTICS
+
+
+@pytest.mark.parametrize(
+    "topic",
+    [
+        contract.TORSIONAL_ACCELERATION,
+        contract.TORSIONAL_ACCELERATION_BLOCK,
+        contract.IMU,
+        contract.JOINT_STATES,
+        contract.ZOOM_SPECTRUM,
+        contract.RMS_CURVE,
+    ],
+)
+def test_every_topic_has_a_section_with_an_example(topic: str) -> None:
+    section = re.search(rf"^## {re.escape(topic)}\n(.*?)(?=^## |\Z)", TOPICS, re.MULTILINE | re.DOTALL)
+    assert section is not None
+    assert "```yaml" in section[1]
+
+
+def test_the_documented_layouts_are_the_contracts() -> None:
+    for dimension in (*contract.zoom_layout(50), *contract.rms_layout(1)):
+        line = f"{{label: {dimension.label}, size: {dimension.size}, stride: {dimension.stride}}}"
+        assert line in TOPICS
+    assert f"`label: {contract.BLOCK_LABEL}`" in TOPICS
+    assert f"| `layout.data_offset` | {contract.BLOCK_OFFSET} |" in TOPICS
+
+
+@pytest.mark.parametrize("page", [*sorted(PAGES.glob("*.md")), ROOT / "README.md"], ids=lambda page: page.name)
+def test_links_lead_somewhere(page: Path) -> None:
+    text = page.read_text(encoding="utf-8")
+    for target in re.findall(r"\]\(([^)#\s]+)(?:#[^)]*)?\)", text):
+        if "://" not in target:
+            assert (page.parent / target).exists(), f"{page.name} links to {target}"
