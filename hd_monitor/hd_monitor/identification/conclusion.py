@@ -88,6 +88,8 @@ class Conclusions:
                 indexes=indexes,
                 scores=scores,
                 inflation=inflation,
+                unexplained=misfit.unexplained,
+                highest_frequency=recent[-1].raw_highest,
                 coverage=coverage,
                 signal_to_noise=snr,
                 relative=relative,

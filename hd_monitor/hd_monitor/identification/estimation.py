@@ -44,7 +44,9 @@ _POOR = 1.5  # inflation of the variances, by what the fit leaves at the lines, 
 _NOMINAL_INDEX = 0.05  # of the larger spline, where an unknown torque leaves the scale open
 _ROUNDS = 8
 _MOVED = 3.0  # standard deviations by which values may move before earlier stretches are linearised anew
-_EXPLORED = 6.0  # s of the newest motion on which other solutions are tried
+_MOST_SUBSTEPS = 16  # integration steps per sample; a sensor that slow shows nothing
+_START_DELAYS = (-0.012, -0.006, -0.003, 0.003, 0.006, 0.012)  # s
+_EXPLORED = 4.5  # s of the newest motion on which other solutions are tried
 
 
 class Estimation:
@@ -101,7 +103,7 @@ class Estimation:
     def take(self, records: Sequence[Record]) -> None:
         """Use a stretch, given as records that follow each other."""
         stretch = self._build(records)
-        if np.count_nonzero(stretch.used) < 4 * self._unknowns.size:
+        if np.count_nonzero(stretch.used) < 4 * self._unknowns.size or stretch.substeps > _MOST_SUBSTEPS:
             return
         self.seconds += stretch.duration
         self._coverage = self._coverage.plus(stretch)
@@ -212,6 +214,8 @@ class Estimation:
         self._active = self._active & ~u.mask(u.frequency, u.damping, u.delay)
         if self._refine:
             self._active = self._active | u.mask(u.frequency, u.damping)
+        if self._coverage.speed_varies:
+            self._active = self._active | u.mask(u.delay)
         self._values = np.where(self._active, fit.values, 0.0)
         starts = self._load_starts(known=True)
         if self._refine:
@@ -219,8 +223,12 @@ class Estimation:
                 start = u.zero()
                 start[u.frequency] = shift
                 starts.append(start)
-        problem = self._anew()
-        return self._explore(problem, starts)
+        if self._coverage.speed_varies:
+            for delay in _START_DELAYS:
+                start = u.zero()
+                start[u.delay] = delay
+                starts.append(start)
+        return self._explore(self._anew(), starts)
 
     def _question(self, fit: Fit) -> Fit:
         """Ask whether what was given agrees with the data, and estimate along what does not."""

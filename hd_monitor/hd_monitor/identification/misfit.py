@@ -27,26 +27,31 @@ class LineResidual:
     ----------
     sums : ndarray of complex, shape (harmonics, orders)
         Coherent sums, in units of the noise floor around each pair.
+    predicted : ndarray of complex, shape (harmonics, orders)
+        The same sums of the prediction.
     weight : ndarray, shape (harmonics,)
-        Expected squares of the sums if there is nothing but noise.
+        Expected squares of the residual's sums if there is nothing but noise.
     travel : float
         Way [rad] that the output went.
     """
 
     sums: ComplexArray
+    predicted: ComplexArray
     weight: FloatArray
     travel: float
 
     @classmethod
     def empty(cls, harmonics: int) -> "LineResidual":
         """Return the sums of no data."""
-        return cls(sums=np.zeros((harmonics, 2 * SIDE + 1), dtype=np.complex128), weight=np.zeros(harmonics), travel=0)
+        nothing = np.zeros((harmonics, 2 * SIDE + 1), dtype=np.complex128)
+        return cls(sums=nothing, predicted=nothing, weight=np.zeros(harmonics), travel=0.0)
 
     def plus(self, evidence: Evidence, floor: NoiseFloor, reducer: Reducer) -> "LineResidual":
         """Add a stretch."""
         stretch, harmonics = evidence.stretch, self.weight.size
-        residual = evidence.linearisation.residual * stretch.used
-        demodulated = (residual - stretch.slow @ (stretch.slow.T @ residual)).astype(np.complex128)
+        line = evidence.linearisation
+        signals = np.stack([line.residual, line.predicted]) * stretch.used
+        demodulated = (signals - (signals @ stretch.slow) @ stretch.slow.T).astype(np.complex128)
         middle = sum(reducer.output_orders) / 2.0
         turn = np.exp(-1j * middle * stretch.angle)
         # the orders beside the middle turn slowly: sums over short ways are enough of each sample
@@ -54,20 +59,27 @@ class LineResidual:
         first = np.flatnonzero(np.diff(np.floor(way / _BLOCK), prepend=-1.0))
         centre = np.add.reduceat(stretch.angle, first) / np.diff(np.append(first, len(stretch)))
         sides = np.exp(-1j * np.multiply.outer(np.arange(-SIDE, SIDE + 1), centre))
-        sums, weight = self.sums.copy(), self.weight.copy()
+        sums, predicted, weight = self.sums.copy(), self.predicted.copy(), self.weight.copy()
         for k in range(harmonics):
             demodulated *= turn
             frequency = np.abs(stretch.speed) * ((k + 1) * middle / math.tau)
             seen = (frequency > 1.0) & (frequency < stretch.highest_frequency)
             if seen.any():
                 std = floor.sample_std(np.maximum(frequency, 1.0), stretch.period)
-                sums[k] += sides @ np.add.reduceat(np.where(seen, demodulated / std, 0.0), first)
+                parts = sides @ np.add.reduceat(np.where(seen, demodulated / std, 0.0), first, axis=1).T
+                sums[k] += parts[:, 0]
+                predicted[k] += parts[:, 1]
                 weight[k] += float(np.count_nonzero(stretch.used[seen]))
-        return LineResidual(sums=sums, weight=weight, travel=self.travel + stretch.travel)
+        return LineResidual(sums=sums, predicted=predicted, weight=weight, travel=self.travel + stretch.travel)
 
     def faded(self, keep: float) -> "LineResidual":
         """Return the sums of data that count `keep` times."""
-        return LineResidual(sums=keep * self.sums, weight=keep * keep * self.weight, travel=keep * self.travel)
+        return LineResidual(
+            sums=keep * self.sums,
+            predicted=keep * self.predicted,
+            weight=keep * keep * self.weight,
+            travel=keep * self.travel,
+        )
 
     @property
     def misfit(self) -> float:
@@ -76,6 +88,15 @@ class LineResidual:
         if not seen.any():
             return 1.0
         return float(np.mean(np.abs(self.sums[seen]) ** 2 / self.weight[seen, None]))
+
+    @property
+    def unexplained(self) -> float:
+        """Amplitude of what is left at the lines, beyond noise, over that of what is explained."""
+        seen = self.weight > 0.0
+        left = np.abs(self.sums[seen]) ** 2 / self.weight[seen, None]
+        explained = float(np.sum(np.abs(self.predicted[seen]) ** 2 / self.weight[seen, None]))
+        beyond = max(float(np.sum(left)) - left.size, 0.0)
+        return math.sqrt(beyond / explained) if explained > 0.0 else 0.0
 
     def inflation(self, span: float) -> float:
         """Factor on the variances that owns up to the misfit: 1 as long as chance explains it.

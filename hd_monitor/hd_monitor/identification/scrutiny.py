@@ -17,8 +17,8 @@ from .unknowns import Unknowns
 
 FloatArray = npt.NDArray[np.float64]
 
-LEAST_TRAVEL = math.tau / 8.0
-"""Output travel [rad] below which no part is named: the lines' overlap then costs the variance a factor above 5."""
+LEAST_TRAVEL = math.radians(85.0)
+"""Output travel [rad] below which no part is named: half of what separates the lines by Fourier means, and less."""
 
 LEAST_MOTION = 3.4
 """Motion [s] below which other solutions have not been looked for yet."""
@@ -30,10 +30,10 @@ TRUSTED_FREQUENCY, TRUSTED_DAMPING = 0.05, 0.3
 """Relative errors of the given natural frequency and damping ratio, twice which a name must survive."""
 
 _VAGUE = 0.5  # standard deviation of both indexes over the warn limit from which nothing can be said
-_CONFUSED = 0.7  # magnitude of the indexes' correlation that shows too short a travel
-_ENOUGH_TRAVEL = math.tau / 4.0  # rad
 _NOTABLE = 0.1  # change of the logarithm of the indexes' ratio that matters
 _WIDENED = 2.25  # inflation of the variances that is worth mentioning
+_UNEXPLAINED = 0.12  # amplitude left at the lines, relative to what is explained, that forbids a name
+_BAND = 0.9  # of half the sampling rate
 _CORRECTED_FREQUENCY, _CORRECTED_DAMPING, _CORRECTED_TORQUE = 0.02, 0.3, 0.25
 _CORRECTED_DELAY = 1e-3  # s
 
@@ -61,6 +61,10 @@ class Suspect:
         What the data alone say of natural frequency, damping, torque and delay.
     inflation : float
         Factor on the variances by which the model's misfit widened them.
+    unexplained : float
+        Amplitude of what the model leaves at the lines over that of what it explains.
+    highest_frequency : float
+        [Hz] that the sensor's rate shows.
     coverage : Coverage
     signal_to_noise : float
         [dB]
@@ -74,6 +78,8 @@ class Suspect:
     indexes: Indexes
     scores: Mapping[int, Score]
     inflation: float
+    unexplained: float
+    highest_frequency: float
     coverage: Coverage
     signal_to_noise: float
     relative: bool
@@ -100,15 +106,36 @@ class Scrutiny:
     def examine(self, suspect: Suspect) -> Findings:
         """Return what is doubtful about a result."""
         doubts, blockers = self._given(suspect)
-        missing = self._missing(suspect)
+        missing = self._unseen(suspect) or self._missing(suspect)
         fragile = "" if missing else self._fragile(suspect)
         if suspect.inflation > _WIDENED:
-            doubts.append(
-                "the model explains the lines only in part, so the uncertainties are widened "
-                f"{math.sqrt(suspect.inflation):.1f} times: check teeth, mount, natural frequency and torque"
-            )
+            widened = f"{math.sqrt(suspect.inflation):.1f} times"
+            if suspect.unexplained > _UNEXPLAINED:
+                blockers.append(
+                    f"{100.0 * suspect.unexplained:.0f} % of the vibration at the lines is not explained by the model: "
+                    "check teeth, mount, natural frequency and torque, and look for another source of vibration near "
+                    "the lines (mains hum, a neighbouring machine)"
+                )
+            else:
+                doubts.append(f"the model explains the lines only in part, so the uncertainties are widened {widened}")
         blockers += [text for text in (missing, fragile) if text]
         return Findings(doubts=tuple(doubts), blockers=tuple(blockers))
+
+    def _unseen(self, suspect: Suspect) -> str:
+        """Say whether the sensor's rate hides what matters; empty if it does not."""
+        highest, frequency = suspect.highest_frequency, suspect.predictor.given.natural_frequency
+        if frequency > _BAND * highest:
+            return (
+                f"The natural frequency given, {frequency:g} Hz, lies beyond what {2.0 * highest:.0f} samples a second "
+                "show: sample faster, or correct dynamics.natural_frequency"
+            )
+        rpm = suspect.coverage.mean_speed * self._reducer.reduction * 60.0 / math.tau
+        if self._reducer.line_frequencies(rpm).flexspline > _BAND * highest:
+            return (
+                f"At {rpm:.0f} rpm the lines lie beyond what {2.0 * highest:.0f} samples a second show: sample faster, "
+                "or turn more slowly"
+            )
+        return ""
 
     def _missing(self, suspect: Suspect) -> str:
         """Say what motion or signal is missing before anything can be named; empty if nothing is."""
@@ -118,7 +145,7 @@ class Scrutiny:
             least = math.degrees(LEAST_TRAVEL)
             return (
                 f"Only {travel:.0f}° of output travel seen: at least {least:.0f}° are needed to tell the two splines' "
-                f"lines apart, so let the joint turn {math.ceil(least - travel):d}° further"
+                f"lines apart, {math.ceil(least - travel):d}° more"
             )
         if coverage.time < LEAST_MOTION:
             return (
@@ -127,12 +154,6 @@ class Scrutiny:
         scale = max(self._warn, *suspect.indexes.index) if suspect.relative else self._warn
         if min(std) <= _VAGUE * scale:
             return ""
-        if abs(suspect.indexes.correlation) > _CONFUSED and coverage.span < _ENOUGH_TRAVEL:
-            further = math.ceil(math.degrees(_ENOUGH_TRAVEL) - travel)
-            return (
-                f"{travel:.0f}° of output travel do not tell the two splines' lines apart at this noise: "
-                f"let the joint turn about {further:d}° further, or go on longer"
-            )
         rpm = coverage.mean_speed * self._reducer.reduction * 60.0 / math.tau
         return (
             f"The lines are too weak against the noise at {rpm:.0f} rpm (signal to noise {suspect.signal_to_noise:.0f} "

@@ -91,6 +91,8 @@ class Stretch:
         Orthonormal directions of slow motion (0 where samples are left out), no part of the torsional vibration.
     highest_frequency : float
         Frequency [Hz] up to which the samples are to be trusted.
+    raw_highest : float
+        Half the sensor's sampling rate [Hz].
     raw_samples : int
         Samples of the sensor behind it.
     outliers : int
@@ -108,6 +110,7 @@ class Stretch:
     at_gauss: Path
     slow: FloatArray
     highest_frequency: float
+    raw_highest: float
     raw_samples: int
     outliers: int
 
@@ -216,6 +219,7 @@ class StretchBuilder:
             at_gauss=self._path(motion, gauss),
             slow=self._slow(motion, signal.used),
             highest_frequency=signal.highest_frequency,
+            raw_highest=0.5 / period,
             raw_samples=int(np.isfinite(raw).sum()),
             outliers=signal.outliers,
         )
