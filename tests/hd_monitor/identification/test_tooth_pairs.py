@@ -167,10 +167,10 @@ def test_never_conclusive_and_wrong_on_random_joints(joints):
     rng = np.random.default_rng(77)
     right = 0
     for lines in ((0.0, 0.0), (0.6, 0.0), (0.6, 0.6)):
-        for _ in range(15):
+        for _ in range(8):
             case = joints.random_joint(rng, LinePair(*lines), rate=float(rng.choice([100.0, 250.0])))
             teeth = (case.reducer.flexspline_teeth, case.reducer.circular_spline_teeth)
             ranking = rank_tooth_pairs(joints.simulate_joint(case))
             assert not ranking.conclusive or ranking.ranked[0].teeth == teeth
             right += ranking.conclusive
-    assert right >= 12
+    assert right >= 6
