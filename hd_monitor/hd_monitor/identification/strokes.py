@@ -137,6 +137,8 @@ class StrokeCutter:
         if not len(rows):
             return []
         known = np.concatenate([self._recent, rows])
+        known[:, 1] = np.unwrap(known[:, 1])  # a joint that turns on and on may report -π to π
+        rows[:, 1] = known[len(self._recent) :, 1]
         rows[:, 2] = _speeds(known)[len(self._recent) :]
         self._recent = known[known[:, 0] >= known[-1, 0] - 2.0 * SPEED_SPAN]
         rows = np.concatenate([self._pending, rows])

@@ -140,6 +140,24 @@ def test_averages_do_not_reach_over_gaps():
         np.testing.assert_allclose(stroke.columns([200.0])[:, 0], stroke.values, atol=2e-2)
 
 
+@pytest.mark.parametrize("with_speed", [True, False])
+def test_positions_may_wrap(with_speed):
+    times = np.arange(0.0, 30.0, 0.01)
+    whole = samples(times, 0.5 + 0.3 * np.cos(0.3 * times), with_speed=with_speed)
+    wrapped = JointSamples(
+        times=times, angle=np.mod(whole.angle + math.pi, math.tau) - math.pi, speed=whole.speed, effort=whole.effort
+    )
+    cutter, found = StrokeCutter("joint_effort", ORDERS, 0.03), []
+    for chosen in np.array_split(np.arange(times.size), 17):
+        found += cutter.add(part(wrapped, chosen))
+    found += cutter.finish()
+    expected = cut(whole)
+    assert len(found) == len(expected) > 3
+    for one, other in zip(found, expected, strict=True):
+        np.testing.assert_allclose(one.angle, other.angle, atol=1e-9)
+        np.testing.assert_allclose(one.speed, other.speed, atol=1e-9)
+
+
 def test_velocity_can_be_the_signal():
     whole = swinging()
     first = cut(whole, source="joint_velocity")[0]
