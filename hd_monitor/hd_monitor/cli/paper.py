@@ -65,6 +65,13 @@ def run(arguments: argparse.Namespace) -> int:
     own = arguments.params is not None and not has_cases(arguments.params)
     if own:
         case = load_own_case(arguments.params)
+        if case.ignored:
+            print(
+                f"{arguments.params.name}: ignoring {', '.join(case.ignored)}: they mean nothing to these "
+                "figures; right if "
+                "others share the file, else check the spelling",
+                file=sys.stderr,
+            )
         exhibits = show(case, arguments.only, _progress(arguments))
         print(fact_table(exhibits))
         heading = f"Torsional vibration of the reducer in {arguments.params.name}"

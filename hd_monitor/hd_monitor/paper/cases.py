@@ -1,21 +1,20 @@
 """The cases that the figures are computed for, read from YAML: the paper's own, or a user's reducer."""
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-import yaml
 
 from ..errors import HdMonitorError, ParameterError
 from ..model import ParametricModel, StiffnessSeries, Torque
 from ..model.parameters import FloatArray
 from ..model.pitch_error import PitchErrors
 from ..model.static_test import StaticTestBed
-from ..parameter import flatten
 from ..settings import PARAMETERS, JointSettings
+from .reading import Reader, merge, read_file
 
 PAPER_FILE = "paper.yaml"
 GRAVITY = 9.80665  # m/s² per g
@@ -81,6 +80,8 @@ class Case:
         Angle between two positions of the static test [rad of the wave generator].
     pitch_error : PitchErrorCase or None
         What the circular spline's fluctuation in `model` comes from, if not given directly.
+    ignored : tuple of str
+        Names in a file shared with others that mean nothing here.
     """
 
     name: str
@@ -94,6 +95,7 @@ class Case:
     static_test: StaticTestBed
     static_step: float
     pitch_error: PitchErrorCase | None
+    ignored: tuple[str, ...] = ()
 
     def in_g(self, acceleration: Any) -> Any:
         """Tangential acceleration at the sensor [g] for a torsional acceleration [rad/s²]."""
@@ -144,109 +146,66 @@ def paper_file() -> Path:
 def load_paper_cases(path: Path | None = None) -> Cases:
     """Read the paper's cases, by default from the installed file."""
     path = path or paper_file()
-    content = _read(path)
+    content = read_file(path)
     cases = content.pop("cases", None)
     if not isinstance(cases, Mapping):
         raise ParameterError(f"{path} has no `cases`; it is not a file with the paper's cases")
     return Cases(
-        {name: _case(f"{path.name}: {name}", _merge(content, own or {})) for name, own in cases.items()}, path.name
+        {name: _case(f"{path.name}: {name}", merge(content, own or {})) for name, own in cases.items()}, path.name
     )
 
 
 def load_own_case(path: Path) -> Case:
-    """Read a user's reducer, from plain YAML or from a ROS parameter file."""
-    content = _read(path)
+    """Read a user's reducer, from plain YAML or from a ROS parameter file.
+
+    A ROS file may hold parameters of others too; the case names those that mean nothing here as `ignored`. In plain
+    YAML they are refused.
+
+    Raises
+    ------
+    HdMonitorError
+        If the file or a value in it makes no sense, or no spline has a defect: there would be nothing to show.
+    """
+    content = read_file(path)
+    shared = False
     if len(content) == 1:
         (only,) = content.values()
         if isinstance(only, Mapping) and "ros__parameters" in only:
-            content = dict(only["ros__parameters"] or {})
-    return _case(path.name, content)
+            content, shared = dict(only["ros__parameters"] or {}), True
+    case = _case(path.name, content, shared=shared)
+    if not (case.model.flexspline.index or case.model.circular_spline.index):
+        raise ParameterError(
+            f"{path} gives no stiffness index, so nothing would vibrate; give flexspline.beta or circular_spline.beta"
+        )
+    return case
 
 
 def has_cases(path: Path) -> bool:
     """Whether the file holds cases of the paper rather than one reducer."""
-    return isinstance(_read(path).get("cases"), Mapping)
+    return isinstance(read_file(path).get("cases"), Mapping)
 
 
-def _read(path: Path) -> dict[str, Any]:
-    try:
-        content = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise HdMonitorError(f"{path} cannot be read: {error.strerror}; check the path") from None
-    except (yaml.YAMLError, UnicodeDecodeError) as error:
-        raise HdMonitorError(f"{path} is no YAML: {' '.join(str(error).split())}") from None
-    if not isinstance(content, Mapping):
-        raise HdMonitorError(f"{path} holds no named values; see config/my_reducer.yaml for an example")
-    return dict(content)
-
-
-def _merge(base: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
-    merged = dict(base)
-    for key, value in over.items():
-        old = merged.get(key)
-        merged[key] = _merge(old, value) if isinstance(old, Mapping) and isinstance(value, Mapping) else value
-    return merged
-
-
-class _Reader:
-    """Takes values out of a flat mapping by their dotted names, so that what is left over can be refused."""
-
-    def __init__(self, source: str, values: Mapping[str, Any]) -> None:
-        self.source = source
-        self.left = flatten(values)
-
-    def number(self, name: str, default: float) -> float:
-        if name not in self.left:
-            return default
-        value = self.left.pop(name)
-        if isinstance(value, bool) or not isinstance(value, (int, float)) or not np.isfinite(value):
-            raise ParameterError(f"{self.source}: {name} = {value!r} is not a finite number")
-        return float(value)
-
-    def numbers(self, name: str) -> tuple[float, ...]:
-        value = self.left.pop(name, ())
-        if not isinstance(value, Sequence) or isinstance(value, str):
-            raise ParameterError(f"{self.source}: {name} = {value!r} is not a list of numbers, one a harmonic")
-        if any(isinstance(v, bool) or not isinstance(v, (int, float)) for v in value):
-            raise ParameterError(f"{self.source}: {name} = {value!r} has an entry that is not a number")
-        return tuple(float(v) for v in value)
-
-    def triple(self, name: str, parts: tuple[str, str, str], default: tuple[float, float, float]) -> tuple[float, ...]:
-        first, last, step = (self.number(f"{name}.{p}", d) for p, d in zip(parts, default, strict=True))
-        if not (first <= last and step > 0.0):
-            raise ParameterError(
-                f"{self.source}: {name} from {first:g} to {last:g} by {step:g} goes nowhere; "
-                f"{parts[1]} must not be below {parts[0]}, and {parts[2]} must be above 0"
-            )
-        return first, last, step
-
-    def has(self, prefix: str) -> bool:
-        return any(name.startswith(f"{prefix}.") for name in self.left)
-
-
-def _case(source: str, values: Mapping[str, Any]) -> Case:
-    reader = _Reader(source, values)
+def _case(source: str, values: Mapping[str, Any], *, shared: bool = False) -> Case:
+    reader = Reader(source, values)
     series = {
-        name: StiffnessSeries(reader.numbers(f"stiffness.{name}"), reader.numbers(f"stiffness.{name}_phase"))
+        name: StiffnessSeries(reader.numbers(f"{name}.beta"), reader.numbers(f"{name}.phase"))
         for name in ("flexspline", "circular_spline")
     }
     known = {parameter.name for parameter in PARAMETERS}
-    torque = Torque(
-        mean=float(reader.left.get("load.torque", 10.0)),
-        load_fluctuation=reader.number("load.fluctuation", 0.0),
-        load_phase=reader.number("load.fluctuation_phase", 0.0),
-        load_order=int(reader.number("load.fluctuation_order", 2)),
-        drive_fluctuation=reader.number("load.drive_fluctuation", 0.0),
-        drive_phase=reader.number("load.drive_phase", 0.0),
-    )
     settings = JointSettings.from_mapping({n: reader.left.pop(n) for n in list(reader.left) if n in known})
     reducer, dynamics = settings.reducer, settings.dynamics
+    torque = Torque(
+        mean=reader.number("torque.mean", settings["load.torque"]),
+        load_fluctuation=reader.number("torque.load_fluctuation", 0.0),
+        load_phase=reader.number("torque.load_phase", 0.0),
+        load_order=int(reader.number("torque.load_order", 2)),
+        drive_fluctuation=reader.number("torque.drive_fluctuation", 0.0),
+        drive_phase=reader.number("torque.drive_phase", 0.0),
+    )
     gear = _pitch_error(reader, reducer.circular_spline_teeth)
     if gear is not None:
         if series["circular_spline"].beta:
-            raise ParameterError(
-                f"{source}: give stiffness.circular_spline or pitch_error, which determines it, not both"
-            )
+            raise ParameterError(f"{source}: give circular_spline.beta or pitch_error, which determines it, not both")
         series["circular_spline"] = gear.errors.stiffness_series(gear.sensitivity)
     model = ParametricModel(reducer=reducer, dynamics=dynamics, torque=torque, **series)
     resonance = 60.0 * dynamics.natural_frequency / reducer.circular_spline_order
@@ -275,8 +234,9 @@ def _case(source: str, values: Mapping[str, Any]) -> Case:
             dial_resolution=reader.number("static_test.dial_resolution", 1e-6),
         ),
         pitch_error=gear,
+        ignored=tuple(sorted(reader.left)),
     )
-    if reader.left:
+    if reader.left and not shared:
         raise ParameterError(
             f"{source}: {', '.join(sorted(reader.left))}: no such value; check the spelling against "
             "config/my_reducer.yaml"
@@ -286,7 +246,7 @@ def _case(source: str, values: Mapping[str, Any]) -> Case:
     return case
 
 
-def _pitch_error(reader: _Reader, teeth: int) -> PitchErrorCase | None:
+def _pitch_error(reader: Reader, teeth: int) -> PitchErrorCase | None:
     if not reader.has("pitch_error"):
         return None
     errors = PitchErrors.of_eccentric_gear(

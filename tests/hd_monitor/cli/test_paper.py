@@ -11,8 +11,8 @@ def altered_paper(tmp_path):
     """A copy of the paper's cases in which a static sample fluctuates too little."""
     path = tmp_path / "altered.yaml"
     text = paper_file().read_text(encoding="utf-8")
-    assert "flexspline: [0.032]" in text
-    path.write_text(text.replace("flexspline: [0.032]", "flexspline: [0.002]"), encoding="utf-8")
+    assert "beta: [0.032]" in text
+    path.write_text(text.replace("beta: [0.032]", "beta: [0.002]"), encoding="utf-8")
     return path
 
 

@@ -7,11 +7,9 @@ from hd_monitor.reducer import Mount
 OWN = """
 reducer: {flexspline_teeth: 100, circular_spline_teeth: 102, mount: flexspline_fixed}
 dynamics: {natural_frequency: 40.0, damping_ratio: 0.03, inertia: 0.5}
-stiffness:
-  flexspline: [0.04, 0.02]
-  circular_spline: [0.03]
-  circular_spline_phase: [1.0]
-load: {torque: 20.0, fluctuation: 2.0, fluctuation_order: 1}
+flexspline: {beta: [0.04, 0.02]}
+circular_spline: {beta: [0.03], phase: [1.0]}
+torque: {mean: 20.0, load_fluctuation: 2.0, load_order: 1}
 """
 
 
@@ -63,6 +61,15 @@ def test_own_reducer_may_be_a_ros_parameter_file(own):
     assert load_own_case(own(nested)).model == load_own_case(own(OWN)).model
 
 
+def test_others_parameters_in_a_ros_file_are_named(own):
+    text = "/**:\n  ros__parameters:\n    flexspline: {beta: [0.1]}\n    programme: dwell\n    sensor: {noise: 0.1}\n"
+    assert load_own_case(own(text)).ignored == ("programme", "sensor.noise")
+
+
+def test_the_monitors_load_is_the_mean_torque_unless_given(own):
+    assert load_own_case(own("flexspline: {beta: [0.1]}\nload: {torque: 33.0}")).model.torque.mean == 33.0
+
+
 def test_the_example_is_usable():
     case = load_own_case(paper_file().with_name("my_reducer.yaml"))
     assert case.model.flexspline.index > 0.0
@@ -72,19 +79,20 @@ def test_the_example_is_usable():
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("stiffness: {flexspine: [0.1]}", "flexspine: no such value"),
-        ("stiffness: {flexspline: 0.1}", "is not a list of numbers"),
-        ("stiffness: {flexspline: [a]}", "not a number"),
+        ("flexspine: {beta: [0.1]}", r"flexspine\.beta: no such value"),
+        ("flexspline: {beta: 0.1}", "is not a list of numbers"),
+        ("flexspline: {beta: [a]}", "not a number"),
         ("reducer: {flexspline_teeth: 162, circular_spline_teeth: 160}", "swapped"),
         ("dynamics: {damping_ratio: much}", "wrong type"),
         ("speed: 0", "must be above 0"),
         ("speed: .nan", "not a finite number"),
-        ("load: {fluctuation: yes}", "not a finite number"),
+        ("torque: {load_fluctuation: yes}", "not a finite number"),
         ("speeds: {start: 300, stop: 200, step: 10}", "goes nowhere"),
         ("sweep: {start: 1, stop: 10, rate: 0}", "goes nowhere"),
-        ("stiffness: {circular_spline: [0.1]}\npitch_error: {eccentricity: 1.0e-5}", "not both"),
+        ("circular_spline: {beta: [0.1]}\npitch_error: {eccentricity: 1.0e-5}", "not both"),
         ("- a\n- b", "holds no named values"),
         ("a: [", "is no YAML"),
+        ("reducer: {flexspline_teeth: 100, circular_spline_teeth: 102}", "gives no stiffness index"),
     ],
 )
 def test_wrong_files_are_refused_with_a_clear_line(own, text, message):

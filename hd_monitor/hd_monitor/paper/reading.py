@@ -1,0 +1,73 @@
+"""Reading named values from YAML, with a clear line for what is wrong."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import yaml
+
+from ..errors import HdMonitorError, ParameterError
+from ..parameter import flatten
+
+
+def read_file(path: Path) -> dict[str, Any]:
+    """Read a YAML file with named values; anything else is refused in one line."""
+    try:
+        content = yaml.safe_load(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise HdMonitorError(f"{path} cannot be read: {error.strerror}; check the path") from None
+    except (yaml.YAMLError, UnicodeDecodeError) as error:
+        raise HdMonitorError(f"{path} is no YAML: {' '.join(str(error).split())}") from None
+    if not isinstance(content, Mapping):
+        raise HdMonitorError(f"{path} holds no named values; see config/my_reducer.yaml for an example")
+    return dict(content)
+
+
+def merge(base: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
+    """Return `base` with the values of `over` in it, group by group."""
+    merged = dict(base)
+    for key, value in over.items():
+        old = merged.get(key)
+        merged[key] = merge(old, value) if isinstance(old, Mapping) and isinstance(value, Mapping) else value
+    return merged
+
+
+class Reader:
+    """Takes values out of a flat mapping by their dotted names, so that what is left over can be refused."""
+
+    def __init__(self, source: str, values: Mapping[str, Any]) -> None:
+        self.source = source
+        self.left = flatten(values)
+
+    def number(self, name: str, default: float) -> float:
+        """Take a finite number."""
+        if name not in self.left:
+            return default
+        value = self.left.pop(name)
+        if isinstance(value, bool) or not isinstance(value, (int, float)) or not np.isfinite(value):
+            raise ParameterError(f"{self.source}: {name} = {value!r} is not a finite number")
+        return float(value)
+
+    def numbers(self, name: str) -> tuple[float, ...]:
+        """Take a list of numbers; none if it is not given."""
+        value = self.left.pop(name, ())
+        if not isinstance(value, Sequence) or isinstance(value, str):
+            raise ParameterError(f"{self.source}: {name} = {value!r} is not a list of numbers, one a harmonic")
+        if any(isinstance(v, bool) or not isinstance(v, (int, float)) for v in value):
+            raise ParameterError(f"{self.source}: {name} = {value!r} has an entry that is not a number")
+        return tuple(float(v) for v in value)
+
+    def triple(self, name: str, parts: tuple[str, str, str], default: tuple[float, float, float]) -> tuple[float, ...]:
+        """Take a range of three numbers that leads somewhere."""
+        first, last, step = (self.number(f"{name}.{p}", d) for p, d in zip(parts, default, strict=True))
+        if not (first <= last and step > 0.0):
+            raise ParameterError(
+                f"{self.source}: {name} from {first:g} to {last:g} by {step:g} goes nowhere; "
+                f"{parts[1]} must not be below {parts[0]}, and {parts[2]} must be above 0"
+            )
+        return first, last, step
+
+    def has(self, prefix: str) -> bool:
+        """Whether something below `prefix` is left."""
+        return any(name.startswith(f"{prefix}.") for name in self.left)
