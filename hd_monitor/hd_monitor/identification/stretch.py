@@ -14,6 +14,7 @@ from ..model.oscillator import GAUSS_OFFSETS
 from ..reducer import Reducer
 from .conditioning import condition
 from .drive import own_acceleration, smooth_torque
+from .tones import foreign_tones, tone_columns
 
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
@@ -217,7 +218,7 @@ class StretchBuilder:
             substeps=steps,
             at_steps=self._path(motion, nodes),
             at_gauss=self._path(motion, gauss),
-            slow=self._slow(motion, signal.used),
+            slow=self._slow(motion, signal.values, signal.used),
             highest_frequency=signal.highest_frequency,
             raw_highest=0.5 / period,
             raw_samples=int(np.isfinite(raw).sum()),
@@ -250,8 +251,8 @@ class StretchBuilder:
             acceleration=_linear(motion.acceleration, places),
         )
 
-    def _slow(self, motion: "_Motion", used: BoolArray) -> FloatArray:
-        """Directions below about 1 Hz, the joint's own acceleration, and for an inertial sensor gravity."""
+    def _slow(self, motion: "_Motion", values: FloatArray, used: BoolArray) -> FloatArray:
+        """Directions below about 1 Hz, the joint's own acceleration, foreign tones; for an inertial sensor gravity."""
         size = motion.angle.size
         degree = _slow_degree(size * motion.step)
         parts = [np.polynomial.legendre.legvander(np.linspace(-1.0, 1.0, size), degree)]
@@ -259,11 +260,23 @@ class StretchBuilder:
             parts.append(motion.acceleration[:, None])
         if self.inertial:
             parts.append(np.stack([np.cos(motion.angle), np.sin(motion.angle)], axis=1))
+        tones = foreign_tones(values, motion.step, *self._own_lines(motion))
+        if tones.size:
+            parts.append(tone_columns(tones, size, motion.step))
         columns = np.concatenate(parts, axis=1) * used[:, None]
         columns /= np.linalg.norm(columns, axis=0) + 1e-300
         squares, directions = np.linalg.eigh(columns.T @ columns)
         kept = squares > 1e-10 * squares[-1]
         return np.asarray(columns @ (directions[:, kept] / np.sqrt(squares[kept])))
+
+    def _own_lines(self, motion: "_Motion") -> tuple[FloatArray, float]:
+        """Frequencies [Hz] between which every group of lines is, and how far its side lines reach beyond."""
+        speed = np.abs(motion.speed)
+        low, high = float(speed.min()) / math.tau, float(speed.max()) / math.tau
+        lowest, highest = self.reducer.output_orders
+        groups = range(1, 2 * self.harmonics + 3)  # the coupling of the splines makes lines beyond the harmonics, too
+        own = [(k * lowest * low, k * highest * high) for k in groups]
+        return np.asarray(own), _SIDE_ORDERS * high
 
 
 class _Motion(NamedTuple):
