@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import cdr, contract
+from .cdr_layout import Fault
 from .errors import LayoutError, ParameterError
 from .settings import JointSettings
 
@@ -105,7 +106,7 @@ class Inputs:
             return
         self._add_mixed_motion(groups, faults, len(messages))
 
-    def _add_mixed_motion(self, groups: list[cdr.JointStates], faults: list[cdr.Fault], total: int) -> None:
+    def _add_mixed_motion(self, groups: list[cdr.JointStates], faults: list[Fault], total: int) -> None:
         columns = [self._column(group.names) for group in groups]
         mine = np.zeros(total, dtype=np.bool_)
         stamps = np.zeros(total, dtype=np.int64)
@@ -120,7 +121,7 @@ class Inputs:
         # are as long as the joint has not been seen at all, since its name may be misspelt.
         first = int(np.flatnonzero(mine)[0]) if mine.any() else total
         strangers = [
-            cdr.Fault(place, self._absent(group.names))
+            Fault(place, self._absent(group.names))
             for group, column in zip(groups, columns, strict=True)
             if column is None and not self._joint_seen
             for place in group.place.tolist()
@@ -175,7 +176,7 @@ class Inputs:
     }
 
 
-def _in_order(groups: list[cdr.MultiArrays], faults: list[cdr.Fault]) -> Iterator[contract.Block | str]:
+def _in_order(groups: list[cdr.MultiArrays], faults: list[Fault]) -> Iterator[contract.Block | str]:
     """Yield the blocks, and what is wrong with those that are none, in the order of the messages."""
     items: list[tuple[int, contract.Block | str]] = list(faults)
     for group in groups:

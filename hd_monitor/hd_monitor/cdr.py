@@ -6,25 +6,18 @@ numpy at once; whatever differs becomes the next template. A message that cannot
 batch.
 """
 
-import struct
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
+from .cdr_layout import Fault, Layout, Template, groups_of
 from .contract import NANOSECONDS, Dimension
 from .errors import LayoutError
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
-
-ENCAPSULATION = 4
-"""Bytes before the payload: representation (2), options (2). Alignment counts from behind them."""
-
-_BIG_ENDIAN, _LITTLE_ENDIAN = 0, 1
-_LONGEST_SEQUENCE = 1 << 28
 
 
 class Samples(NamedTuple):
@@ -67,116 +60,6 @@ class MultiArrays(NamedTuple):
     """Shape (N, values)."""
 
 
-class Fault(NamedTuple):
-    """A message that could not be read: its position in the batch and why."""
-
-    place: int
-    reason: str
-
-
-@dataclass(frozen=True, slots=True)
-class _Layout[T]:
-    """Where the values of a message stand (`record`), and which of its bytes decide that (`decisive`)."""
-
-    record: np.dtype[np.void]
-    decisive: npt.NDArray[np.bool_]
-    content: T
-
-
-class _Template:
-    """Walks once through a message and notes where its values stand."""
-
-    def __init__(self, message: bytes) -> None:
-        if len(message) < ENCAPSULATION:
-            raise LayoutError(f"a message of {len(message)} bytes is too short for a CDR header; it was cut off")
-        if message[0] != 0 or message[1] not in (_BIG_ENDIAN, _LITTLE_ENDIAN):
-            raise LayoutError(f"a message is encapsulated as {message[:2].hex()}; only plain CDR (0000, 0001) is read")
-        self._message = message
-        self._order = "<" if message[1] == _LITTLE_ENDIAN else ">"
-        self._at = ENCAPSULATION
-        self._decisive = np.zeros(len(message), dtype=np.bool_)
-        self._decisive[:2] = True
-        self._fields: list[tuple[str, tuple[str, tuple[int, ...]], int]] = []
-
-    def _take(self, size: int, alignment: int) -> int:
-        start = ENCAPSULATION + -(-(self._at - ENCAPSULATION) // alignment) * alignment
-        if start + size > len(self._message):
-            raise LayoutError(
-                f"a message ends after {len(self._message)} bytes, but its contents need {start + size}; it was cut "
-                "off or is of another type"
-            )
-        self._at = start + size
-        return start
-
-    def count(self) -> int:
-        """Read a number that decides the layout."""
-        start = self._take(4, 4)
-        self._decisive[start : start + 4] = True
-        return int(struct.unpack_from(f"{self._order}I", self._message, start)[0])
-
-    def text(self, *, decisive: bool = False) -> str:
-        """Read a string; its length always decides the layout, its letters if asked."""
-        length = self.count()
-        start = self._take(length, 1)
-        if decisive:
-            self._decisive[start : start + length] = True
-        return self._message[start : start + length].rstrip(b"\0").decode(errors="replace")
-
-    def field(self, name: str, kind: str, values: int | None = None) -> None:
-        """Note a field: `kind` as numpy writes it ('i4', 'u4', 'f8'), one value or an array of `values`."""
-        size = int(kind[1:])
-        if values is not None and values > _LONGEST_SEQUENCE:
-            raise LayoutError(f"a message announces {values} values; it is damaged or of another type")
-        start = self._take(size * (1 if values is None else values), size if values != 0 else 1)
-        self._fields.append((name, (f"{self._order}{kind}", () if values is None else (values,)), start))
-
-    def stamp(self) -> None:
-        """Note a header: its stamp as fields, the length of its frame's name as layout."""
-        self.field("seconds", "i4")
-        self.field("nanoseconds", "u4")
-        self.text()
-
-    def layout[T](self, content: T) -> _Layout[T]:
-        """Return what was noted, with what the message says by its layout alone."""
-        record = np.dtype(
-            {
-                "names": [name for name, _, _ in self._fields],
-                "formats": [kind for _, kind, _ in self._fields],
-                "offsets": [start for _, _, start in self._fields],
-                "itemsize": len(self._message),
-            }
-        )
-        return _Layout(record, self._decisive, content)
-
-
-def _groups[T](
-    messages: Sequence[bytes], parse: Callable[[bytes], _Layout[T]], faults: list[Fault]
-) -> Iterator[tuple[IntArray, npt.NDArray[np.void], T]]:
-    """Yield (positions, structured array, content) for each set of messages that share a layout."""
-    lengths = np.fromiter(map(len, messages), dtype=np.int64, count=len(messages))
-    for length in np.unique(lengths).tolist():
-        left = np.flatnonzero(lengths == length)
-        while left.size:
-            first = int(left[0])
-            try:
-                layout = parse(messages[first])
-            except LayoutError as error:
-                faults.append(Fault(first, str(error)))
-                left = left[1:]
-                continue
-            chosen = messages if left.size == len(messages) else [messages[i] for i in left.tolist()]
-            joined = b"".join(chosen)
-            raw = np.frombuffer(joined, dtype=np.uint8).reshape(left.size, length)
-            key = raw[:, layout.decisive]
-            same = np.asarray((key == key[0]).all(axis=1))
-            rows = np.frombuffer(joined, dtype=layout.record)
-            if same.all():
-                yield left, rows, layout.content
-                break
-            yield left[same], rows[same], layout.content
-            left = left[~same]
-
-
 def _stamps(rows: npt.NDArray[np.void]) -> IntArray:
     return rows["seconds"].astype(np.int64) * NANOSECONDS + rows["nanoseconds"].astype(np.int64)
 
@@ -185,16 +68,16 @@ def _doubles(values: npt.NDArray[np.void]) -> FloatArray:
     return values.astype(np.float64)
 
 
-def _parse_accel(message: bytes) -> _Layout[None]:
-    template = _Template(message)
+def _parse_accel(message: bytes) -> Layout[None]:
+    template = Template(message)
     template.stamp()
     template.field("linear", "f8", 3)
     template.field("angular", "f8", 3)
     return template.layout(None)
 
 
-def _parse_imu(message: bytes) -> _Layout[None]:
-    template = _Template(message)
+def _parse_imu(message: bytes) -> Layout[None]:
+    template = Template(message)
     template.stamp()
     for name, values in (
         ("orientation", 4),
@@ -208,8 +91,8 @@ def _parse_imu(message: bytes) -> _Layout[None]:
     return template.layout(None)
 
 
-def _parse_joint_state(message: bytes) -> _Layout[tuple[str, ...]]:
-    template = _Template(message)
+def _parse_joint_state(message: bytes) -> Layout[tuple[str, ...]]:
+    template = Template(message)
     template.stamp()
     count = template.count()
     if count > len(message):
@@ -225,8 +108,8 @@ def _parse_joint_state(message: bytes) -> _Layout[tuple[str, ...]]:
     return template.layout(names)
 
 
-def _parse_multi_array(message: bytes) -> _Layout[tuple[tuple[Dimension, ...], int]]:
-    template = _Template(message)
+def _parse_multi_array(message: bytes) -> Layout[tuple[tuple[Dimension, ...], int]]:
+    template = Template(message)
     count = template.count()
     if count > len(message):
         raise LayoutError(f"an array announces {count} dimensions; it is damaged or of another type")
@@ -238,9 +121,9 @@ def _parse_multi_array(message: bytes) -> _Layout[tuple[tuple[Dimension, ...], i
     return template.layout((dimensions, offset))
 
 
-def _samples(messages: Sequence[bytes], parse: Callable[[bytes], _Layout[None]]) -> Samples:
+def _samples(messages: Sequence[bytes], parse: Callable[[bytes], Layout[None]]) -> Samples:
     faults: list[Fault] = []
-    groups = list(_groups(messages, parse, faults))
+    groups = list(groups_of(messages, parse, faults))
     if len(groups) == 1 and not faults:
         rows = groups[0][1]
         return Samples(_stamps(rows), _doubles(rows["linear"]), _doubles(rows["angular"]), ())
@@ -294,7 +177,7 @@ def decode_joint_states(messages: Sequence[bytes]) -> tuple[list[JointStates], l
     """
     faults: list[Fault] = []
     groups = []
-    for place, rows, names in _groups(messages, _parse_joint_state, faults):
+    for place, rows, names in groups_of(messages, _parse_joint_state, faults):
         arrays = []
         for name in ("position", "velocity", "effort"):
             values = _doubles(rows[name])
@@ -308,12 +191,12 @@ def decode_multi_arrays(messages: Sequence[bytes]) -> tuple[list[MultiArrays], l
     faults: list[Fault] = []
     groups = [
         MultiArrays(place, dimensions, offset, _doubles(rows["data"]))
-        for place, rows, (dimensions, offset) in _groups(messages, _parse_multi_array, faults)
+        for place, rows, (dimensions, offset) in groups_of(messages, _parse_multi_array, faults)
     ]
     return groups, sorted(faults)
 
 
-_PARSERS: dict[str, Callable[[bytes], _Layout[Any]]] = {
+_PARSERS: dict[str, Callable[[bytes], Layout[Any]]] = {
     "geometry_msgs/msg/AccelStamped": _parse_accel,
     "sensor_msgs/msg/Imu": _parse_imu,
     "sensor_msgs/msg/JointState": _parse_joint_state,

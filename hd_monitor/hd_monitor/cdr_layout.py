@@ -1,0 +1,140 @@
+"""Where the values of a serialised (CDR) message stand, found on one message and held against many at once."""
+
+import struct
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from .errors import LayoutError
+
+IntArray = npt.NDArray[np.int64]
+
+ENCAPSULATION = 4
+"""Bytes before the payload: representation (2), options (2). Alignment counts from behind them."""
+
+_BIG_ENDIAN, _LITTLE_ENDIAN = 0, 1
+_LONGEST_SEQUENCE = 1 << 28
+
+
+class Fault(NamedTuple):
+    """A message that could not be read: its position in the batch and why."""
+
+    place: int
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class Layout[T]:
+    """Where the values of a message stand (`record`), and which of its bytes decide that (`decisive`)."""
+
+    record: np.dtype[np.void]
+    decisive: npt.NDArray[np.bool_]
+    content: T
+
+
+class Template:
+    """Walks once through a message and notes where its values stand.
+
+    Parameters
+    ----------
+    message : bytes
+        With its 4-byte header, of either byte order.
+
+    Raises
+    ------
+    LayoutError
+        Here and in every method, if the message is no plain CDR or ends before its contents do.
+    """
+
+    def __init__(self, message: bytes) -> None:
+        if len(message) < ENCAPSULATION:
+            raise LayoutError(f"a message of {len(message)} bytes is too short for a CDR header; it was cut off")
+        if message[0] != 0 or message[1] not in (_BIG_ENDIAN, _LITTLE_ENDIAN):
+            raise LayoutError(f"a message is encapsulated as {message[:2].hex()}; only plain CDR (0000, 0001) is read")
+        self._message = message
+        self._order = "<" if message[1] == _LITTLE_ENDIAN else ">"
+        self._at = ENCAPSULATION
+        self._decisive = np.zeros(len(message), dtype=np.bool_)
+        self._decisive[:2] = True
+        self._fields: list[tuple[str, tuple[str, tuple[int, ...]], int]] = []
+
+    def _take(self, size: int, alignment: int) -> int:
+        start = ENCAPSULATION + -(-(self._at - ENCAPSULATION) // alignment) * alignment
+        if start + size > len(self._message):
+            raise LayoutError(
+                f"a message ends after {len(self._message)} bytes, but its contents need {start + size}; it was cut "
+                "off or is of another type"
+            )
+        self._at = start + size
+        return start
+
+    def count(self) -> int:
+        """Read a number that decides the layout."""
+        start = self._take(4, 4)
+        self._decisive[start : start + 4] = True
+        return int(struct.unpack_from(f"{self._order}I", self._message, start)[0])
+
+    def text(self, *, decisive: bool = False) -> str:
+        """Read a string; its length always decides the layout, its letters if asked."""
+        length = self.count()
+        start = self._take(length, 1)
+        if decisive:
+            self._decisive[start : start + length] = True
+        return self._message[start : start + length].rstrip(b"\0").decode(errors="replace")
+
+    def field(self, name: str, kind: str, values: int | None = None) -> None:
+        """Note a field: `kind` as numpy writes it ('i4', 'u4', 'f8'), one value or an array of `values`."""
+        size = int(kind[1:])
+        if values is not None and values > _LONGEST_SEQUENCE:
+            raise LayoutError(f"a message announces {values} values; it is damaged or of another type")
+        start = self._take(size * (1 if values is None else values), size if values != 0 else 1)
+        self._fields.append((name, (f"{self._order}{kind}", () if values is None else (values,)), start))
+
+    def stamp(self) -> None:
+        """Note a header: its stamp as fields, the length of its frame's name as layout."""
+        self.field("seconds", "i4")
+        self.field("nanoseconds", "u4")
+        self.text()
+
+    def layout[T](self, content: T) -> Layout[T]:
+        """Return what was noted, with what the message says by its layout alone."""
+        record = np.dtype(
+            {
+                "names": [name for name, _, _ in self._fields],
+                "formats": [kind for _, kind, _ in self._fields],
+                "offsets": [start for _, _, start in self._fields],
+                "itemsize": len(self._message),
+            }
+        )
+        return Layout(record, self._decisive, content)
+
+
+def groups_of[T](
+    messages: Sequence[bytes], parse: Callable[[bytes], Layout[T]], faults: list[Fault]
+) -> Iterator[tuple[IntArray, npt.NDArray[np.void], T]]:
+    """Yield (positions, structured array, content) for each set of messages that share a layout."""
+    lengths = np.fromiter(map(len, messages), dtype=np.int64, count=len(messages))
+    for length in np.unique(lengths).tolist():
+        left = np.flatnonzero(lengths == length)
+        while left.size:
+            first = int(left[0])
+            try:
+                layout = parse(messages[first])
+            except LayoutError as error:
+                faults.append(Fault(first, str(error)))
+                left = left[1:]
+                continue
+            chosen = messages if left.size == len(messages) else [messages[i] for i in left.tolist()]
+            joined = b"".join(chosen)
+            raw = np.frombuffer(joined, dtype=np.uint8).reshape(left.size, length)
+            key = raw[:, layout.decisive]
+            same = np.asarray((key == key[0]).all(axis=1))
+            rows = np.frombuffer(joined, dtype=layout.record)
+            if same.all():
+                yield left, rows, layout.content
+                break
+            yield left[same], rows[same], layout.content
+            left = left[~same]
