@@ -17,11 +17,15 @@ def _percent(value: float) -> str:
     return f"{100.0 * value:.1f} %"
 
 
+def _with_std(value: float, std: float) -> str:
+    return f"{100.0 * value:.1f} ± {max(100.0 * std, 0.1):.1f} %"
+
+
 def _indexes(evidence: Identification) -> str:
     index, std = evidence.index, evidence.index_std
     return (
-        f"flexspline index {_percent(index.flexspline)} ± {_percent(std.flexspline)}, "
-        f"circular spline index {_percent(index.circular_spline)} ± {_percent(std.circular_spline)}"
+        f"flexspline index {_with_std(index.flexspline, std.flexspline)}, "
+        f"circular spline index {_with_std(index.circular_spline, std.circular_spline)}"
     )
 
 
@@ -65,7 +69,7 @@ def describe_doubtful_limit(evidence: Identification, limit: float, worst: tuple
     index, std = worst
     factor = (std / max(abs(index - limit), 0.1 * limit)) ** 2
     return _with_doubts(
-        f"The larger index, {_percent(index)} ± {_percent(std)}, lies about the limit of {_percent(limit)}; "
+        f"The larger index, {_with_std(index, std)}, lies about the limit of {_percent(limit)}; "
         f"about {max(2, math.ceil(4.0 * factor))} times the present motion would tell",
         evidence,
     )
