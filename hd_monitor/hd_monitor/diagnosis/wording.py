@@ -18,7 +18,7 @@ def _percent(value: float) -> str:
 
 
 def _with_std(value: float, std: float) -> str:
-    return f"{100.0 * value:.1f} ± {max(100.0 * std, 0.1):.1f} %"
+    return f"{_percent(value)} ± {_percent(max(std, 1e-3))}"
 
 
 def _indexes(evidence: Identification) -> str:
