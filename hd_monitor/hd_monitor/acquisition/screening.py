@@ -8,6 +8,7 @@ import numpy.typing as npt
 FloatArray = npt.NDArray[np.float64]
 
 _SPIKE = 8.0  # robust standard deviations of the curvature; a sine never exceeds 2
+_AROUND = 5  # samples on either side of a spike that tell the level there
 _STUCK_RUN = 32  # equal samples in a row: no sensor at rest is that quiet
 _CLIPPED_RUN = 3  # equal samples in a row at the extreme: a flat top
 
@@ -82,4 +83,14 @@ def _spikes(values: FloatArray) -> npt.NDArray[np.intp]:
     # the neighbours of a spike bend too, half as much: only the local maximum is the spike
     padded = np.concatenate([[0.0, 0.0], np.nan_to_num(curvature), [0.0, 0.0]])
     peak = (padded[2:-2] >= padded[1:-3]) & (padded[2:-2] >= padded[3:-1]) & (padded[2:-2] > limit)
-    return np.flatnonzero(peak) + 1
+    candidates = np.flatnonzero(peak)
+    return np.asarray([i + 1 for i in candidates.tolist() if _sticks_out(curvature, i)], dtype=np.intp)
+
+
+def _sticks_out(curvature: FloatArray, place: int) -> bool:
+    """Whether the curvature at a place exceeds that around it as well: a level that rises, at a resonance, does not."""
+    around = np.concatenate(
+        [curvature[max(0, place - _AROUND) : max(0, place - 1)], curvature[place + 2 : place + 1 + _AROUND]]
+    )
+    around = around[np.isfinite(around)]
+    return not around.size or bool(curvature[place] > _SPIKE * 1.4826 * float(np.median(around)))
