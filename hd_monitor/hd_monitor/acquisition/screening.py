@@ -8,7 +8,7 @@ import numpy.typing as npt
 FloatArray = npt.NDArray[np.float64]
 
 _SPIKE = 8.0  # robust standard deviations of the curvature; a sine never exceeds 2
-_AROUND = 5  # samples on either side of a spike that tell the level there
+_AROUND = 12  # samples on either side of a spike that tell the level there
 _STUCK_RUN = 32  # equal samples in a row: no sensor at rest is that quiet
 _CLIPPED_RUN = 3  # equal samples in a row at the extreme: a flat top
 
