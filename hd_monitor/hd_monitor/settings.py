@@ -90,7 +90,7 @@ PARAMETERS: tuple[Parameter, ...] = (
     ),
     Parameter(
         name="input.queue_seconds",
-        default=4.0,
+        default=20.0,
         unit="s",
         low=0.1,
         high=60.0,

@@ -112,3 +112,24 @@ def test_reset_forgets_the_evidence(bench: Bench, peer: Any) -> None:
     bench.forget()
     bench.until_status(lambda s: s.component == "undetermined", "a verdict without evidence")
     bench.until_status(settled, "a new verdict")
+
+
+def test_latch_holds_until_it_is_reset(bench: Bench, peer: Any) -> None:
+    from rcl_interfaces.srv import SetParameters
+    from rclpy.parameter import Parameter
+
+    from .conftest import QUICK
+    from .test_verdicts import settled
+
+    bench.monitor("diagnosis.latch:=true", "analysis.memory:=5.0")
+    bench.rig("defect:=flexspline", *QUICK)
+    bench.until_status(settled, "a settled verdict")
+    request = SetParameters.Request(parameters=[Parameter("defect", value="none").to_parameter_msg()])
+    assert peer.call(SetParameters, "hd_sim_node/set_parameters", request).results[0].successful
+    held = bench.until_status(
+        lambda s: s.message.startswith("latched: ") and "now: Both splines are sound" in s.message,
+        "a latched verdict beside a sound reducer",
+    )
+    assert held.component == "flexspline"
+    assert trigger(peer, "reset_latch").success
+    bench.until_status(lambda s: s.component == "none", "the present verdict")

@@ -52,7 +52,7 @@ def test_vibration_without_joint_states(bench: Bench, feeder: Feeder) -> None:
 def test_input_that_ends_is_missed_and_the_evidence_kept(bench: Bench, feeder: Feeder) -> None:
     bench.monitor("input.timeout:=0.5")
     bench.until(feeder.matched, "the monitor's subscriptions")
-    feeder.send(60)
+    feeder.send(100)
     bench.until_status(lambda s: s.number("samples") >= 2000, "two seconds of samples")
     bench.forget()
     status = bench.until_status(lost, "the loss of the input")
