@@ -4,11 +4,12 @@ ros2 launch hd_monitor demo.launch.py defect:=circular_spline time_scale:=4.0
 ros2 topic echo /diagnostics
 """
 
-from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument
 from launch.substitutions import LaunchConfiguration, PythonExpression
 from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
+
+from launch import LaunchDescription
 
 
 def generate_launch_description():

@@ -7,14 +7,14 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from hd_monitor.cdr import record_layout
-from hd_monitor.contract import NANOSECONDS
-from hd_monitor.errors import HdMonitorError
 from rosbags.interfaces import Connection, Qos, QosDurability, QosHistory, QosLiveliness, QosReliability, QosTime
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer, WriterError
 from rosbags.typesys import Stores, get_typestore
 
 from hd_monitor import contract
+from hd_monitor.cdr import record_layout
+from hd_monitor.contract import NANOSECONDS
+from hd_monitor.errors import HdMonitorError
 
 from .imu import imu_readings
 from .settings import RigSettings

@@ -6,9 +6,6 @@ from collections.abc import Sequence
 from typing import Any
 
 import rclpy
-from hd_monitor.errors import HdMonitorError
-from hd_monitor.parameter import Parameter
-from hd_monitor.ros.parameters import describe
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.clock import Clock, ClockType
 from rclpy.duration import Duration
@@ -19,6 +16,10 @@ from rclpy.logging import get_logger
 from rclpy.parameter import Parameter as RosParameter
 from rclpy.qos import QoSProfile
 from rclpy.task import Future
+
+from hd_monitor.errors import HdMonitorError
+from hd_monitor.parameter import Parameter
+from hd_monitor.ros.parameters import describe
 
 from .node_parameters import NODE_PARAMETERS
 from .parameters import CHANGEABLE, PARAMETERS

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+
 from hd_monitor.errors import ParameterError
 
 FloatArray = npt.NDArray[np.float64]

@@ -4,11 +4,11 @@ from array import array
 from typing import Any, Protocol
 
 from geometry_msgs.msg import AccelStamped
-from hd_monitor.contract import BLOCK_LABEL, BLOCK_OFFSET, NANOSECONDS
 from sensor_msgs.msg import Imu, JointState
 from std_msgs.msg import Float64MultiArray, MultiArrayDimension
 
 from hd_monitor import contract
+from hd_monitor.contract import BLOCK_LABEL, BLOCK_OFFSET, NANOSECONDS
 
 from .imu import ImuBatch, imu_readings
 from .settings import RigSettings

@@ -5,11 +5,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
+from scipy.interpolate import CubicHermiteSpline
+
 from hd_monitor.errors import ParameterError
 from hd_monitor.model import Oscillator, ParametricModel, Response
 from hd_monitor.model.oscillator import GAUSS_OFFSETS
 from hd_monitor.reducer import WAVE_GENERATOR_LOBES
-from scipy.interpolate import CubicHermiteSpline
 
 from .programme import FloatArray, SpeedProgramme
 

@@ -4,10 +4,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from hd_monitor.contract import NANOSECONDS, Block
-from hd_monitor.errors import ParameterError
 
 from hd_monitor import contract
+from hd_monitor.contract import NANOSECONDS, Block
+from hd_monitor.errors import ParameterError
 
 from .encoder import Joint, JointBatch
 from .programme import FloatArray

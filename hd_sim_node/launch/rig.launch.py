@@ -3,11 +3,12 @@
 For example: ``ros2 launch hd_sim_node rig.launch.py defect:=circular_spline programme:=strokes``.
 """
 
-from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, OpaqueFunction
 from launch.launch_context import LaunchContext
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
+
+from launch import LaunchDescription
 
 # Arguments that stand for a parameter of the same name: its type and what it is for. Empty leaves the parameter to the
 # parameter file, or to its default.

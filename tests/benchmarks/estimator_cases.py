@@ -10,6 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from scipy.interpolate import CubicHermiteSpline
+from scipy.signal import lfilter
+
 from hd_monitor.acquisition.motion import MotionTrack
 from hd_monitor.acquisition.record import Record
 from hd_monitor.diagnosis.verdict import Component
@@ -24,8 +27,6 @@ from hd_monitor.model import (
 )
 from hd_monitor.reducer import LinePair, Mount, Reducer
 from hd_monitor.settings import JointSettings
-from scipy.interpolate import CubicHermiteSpline
-from scipy.signal import lfilter
 
 FloatArray = npt.NDArray[np.float64]
 

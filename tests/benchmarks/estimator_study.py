@@ -24,6 +24,7 @@ from itertools import repeat
 from pathlib import Path
 
 import numpy as np
+
 from hd_monitor.acquisition.record import Record
 from hd_monitor.analysis.line_regression import fit_lines
 from hd_monitor.analysis.zoom import zoom_spectrum

@@ -14,11 +14,12 @@ from concurrent.futures import ProcessPoolExecutor
 from typing import Any
 
 import numpy as np
+from scipy.stats import beta
+
 from hd_monitor.monitor import Monitor
 from hd_monitor.settings import JointSettings
 from hd_sim_node.settings import RigSettings
 from hd_sim_node.simulation import Simulation
-from scipy.stats import beta
 
 EPOCH = 1_700_000_000_000_000_000
 TEETH = ((160, 162), (200, 202), (100, 102), (240, 242))

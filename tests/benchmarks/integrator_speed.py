@@ -11,12 +11,13 @@ from pathlib import Path
 from typing import Literal
 
 import numpy as np
+from scipy.integrate import solve_ivp
+
 from hd_monitor.model import Oscillator, ParametricModel, StiffnessSeries, gauss_times
 from hd_sim_node.programme import SpeedProgramme
 from hd_sim_node.rig import Rig
 from hd_sim_node.settings import RigSettings
 from hd_sim_node.simulation import Simulation
-from scipy.integrate import solve_ivp
 
 MODEL = ParametricModel(
     flexspline=StiffnessSeries((0.06, 0.03, 0.02)),

@@ -16,13 +16,14 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from rosbags.rosbag2 import StoragePlugin, Writer
+
 from hd_monitor.adapters import Inputs
 from hd_monitor.offline.bag import Bag
 from hd_monitor.offline.plan import Request, plan
 from hd_monitor.offline.replay import replay
 from hd_sim_node.settings import RigSettings
 from hd_sim_node.simulation import Simulation
-from rosbags.rosbag2 import StoragePlugin, Writer
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from tests.hd_monitor.offline import recordings as rec

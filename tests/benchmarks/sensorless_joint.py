@@ -8,10 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from scipy.signal import lfilter
+
 from hd_monitor.acquisition.record import JointSamples
 from hd_monitor.reducer import LinePair, Mount, Reducer
 from hd_monitor.settings import JointSettings
-from scipy.signal import lfilter
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -13,6 +13,9 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 
 import numpy as np
+from scipy import stats
+from tests.benchmarks.sensorless_joint import random_joint, simulate_joint
+
 from hd_monitor.acquisition.record import JointSamples
 from hd_monitor.diagnosis import Component, Judge, Limits
 from hd_monitor.identification.result import Identification
@@ -20,9 +23,6 @@ from hd_monitor.identification.sensorless import SensorlessIdentifier
 from hd_monitor.identification.tooth_pairs import rank_tooth_pairs
 from hd_monitor.reducer import LinePair
 from hd_monitor.settings import JointSettings
-from scipy import stats
-
-from tests.benchmarks.sensorless_joint import random_joint, simulate_joint
 
 UR10E = {
     "reducer.flexspline_teeth": 200,

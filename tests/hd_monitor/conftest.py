@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import scipy.io
+
 from hd_monitor.acquisition.record import JointSamples
 
 RECORDINGS = Path(__file__).parents[2].parent / "shared" / "data"

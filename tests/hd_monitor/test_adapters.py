@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pytest
+
 from hd_monitor.adapters import Inputs
 from hd_monitor.contract import Block
 from hd_monitor.errors import ParameterError

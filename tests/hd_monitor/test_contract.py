@@ -4,6 +4,10 @@ import math
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
 from hd_monitor.contract import (
     BLOCK_LABEL,
     MAX_ZOOM_BINS,
@@ -15,9 +19,6 @@ from hd_monitor.contract import (
     zoom_layout,
 )
 from hd_monitor.errors import LayoutError
-from hypothesis import given
-from hypothesis import strategies as st
-from hypothesis.extra.numpy import arrays
 
 STAMP = 1_700_000_000_123_456_789
 

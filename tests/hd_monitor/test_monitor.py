@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 import pytest
+
 from hd_monitor.assessment import Assessment
 from hd_monitor.contract import Block
 from hd_monitor.diagnosis.status import Status, status_of

@@ -4,6 +4,7 @@ import math
 from array import array
 
 import pytest
+
 from hd_monitor.errors import ParameterError
 from hd_monitor.parameter import Parameter, check_all, flatten
 

@@ -4,10 +4,11 @@ import math
 from fractions import Fraction
 
 import pytest
-from hd_monitor.errors import GeometryError, ParameterError
-from hd_monitor.reducer import LinePair, Mount, Reducer
 from hypothesis import given
 from hypothesis import strategies as st
+
+from hd_monitor.errors import GeometryError, ParameterError
+from hd_monitor.reducer import LinePair, Mount, Reducer
 
 MOUNTS = st.sampled_from(list(Mount))
 REDUCERS = st.builds(

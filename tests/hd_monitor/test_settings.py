@@ -3,6 +3,7 @@
 import math
 
 import pytest
+
 from hd_monitor.errors import GeometryError, ParameterError
 from hd_monitor.reducer import Mount
 from hd_monitor.settings import (

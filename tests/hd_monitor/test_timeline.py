@@ -3,10 +3,11 @@
 import itertools
 
 import numpy as np
-from hd_monitor.acquisition.stream import LATENESS, StampedBuffer
-from hd_monitor.timeline import Timeline, Window
 from hypothesis import given
 from hypothesis import strategies as st
+
+from hd_monitor.acquisition.stream import LATENESS, StampedBuffer
+from hd_monitor.timeline import Timeline, Window
 
 SECOND = 1_000_000_000
 STEP = 10_000_000

@@ -4,18 +4,19 @@ from typing import Any
 
 import numpy as np
 import pytest
+
+from hd_monitor import cdr, contract
 from hd_monitor.contract import NANOSECONDS, unpack_block
 from hd_sim_node.imu import imu_readings
 from hd_sim_node.settings import RigSettings
 from hd_sim_node.simulation import Simulation, Stretch
 
-from hd_monitor import cdr, contract
-
 pytest.importorskip("rosbags", reason="writing and reading bags needs the extra 'offline'")
 
-from hd_sim_node.bag import COMPRESSIONS, STORAGES, BagError, write_bag
 from rosbags.highlevel import AnyReader
 from rosbags.typesys import Stores, get_typestore
+
+from hd_sim_node.bag import COMPRESSIONS, STORAGES, BagError, write_bag
 
 START = 1_700_000_000 * NANOSECONDS + 123
 EVERYTHING = {

@@ -8,9 +8,10 @@ import pytest
 
 pytest.importorskip("rosbags", reason="writing and reading bags needs the extra 'offline'")
 
+from rosbags.rosbag2 import Reader
+
 from hd_sim_node.bag import COMPRESSIONS, STORAGES
 from hd_sim_node.bag_command import build_parser, main
-from rosbags.rosbag2 import Reader
 
 SHORT = ["--programme", "fixed", "--duration", "0.5"]
 

@@ -1,6 +1,7 @@
 """The defects to choose from give a clear verdict and a stable rig over the whole programme."""
 
 import pytest
+
 from hd_monitor.errors import ParameterError
 from hd_monitor.model import Dynamics, ParametricModel, StiffnessSeries
 from hd_monitor.settings import JointSettings

@@ -4,12 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
 from hd_monitor.model import Torque, table_1
 from hd_sim_node.encoder import Joint, JointSettings
 from hd_sim_node.programme import SpeedProgramme
 from hd_sim_node.rig import Rig, Surroundings
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 PROGRAMME = SpeedProgramme(times=[0.0, 2.0], speeds=[300.0, 900.0], cycles=1)
 MODEL = table_1(torque=Torque(mean=10.0, drive_fluctuation=1.0, load_fluctuation=4.0))

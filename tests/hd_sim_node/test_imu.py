@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from hd_monitor.model import ParametricModel, table_1
 from hd_sim_node.imu import STANDARD_GRAVITY, imu_readings
 from hd_sim_node.programme import SpeedProgramme

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+
 from hd_monitor.contract import NANOSECONDS, unpack_block
 from hd_sim_node.node_parameters import NODE_PARAMETERS
 from hd_sim_node.parameters import CHANGEABLE, PARAMETERS

@@ -4,11 +4,12 @@ import math
 
 import numpy as np
 import pytest
-from hd_monitor.errors import ParameterError
-from hd_sim_node.programme import RPM, Ripple, SpeedProgramme
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad, trapezoid
+
+from hd_monitor.errors import ParameterError
+from hd_sim_node.programme import RPM, Ripple, SpeedProgramme
 
 SPEEDS = st.floats(-3000.0, 3000.0)
 

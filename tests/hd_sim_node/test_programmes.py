@@ -4,12 +4,13 @@ import math
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
 from hd_monitor.errors import ParameterError
 from hd_monitor.reducer import Mount, Reducer
 from hd_sim_node.programme import RPM
 from hd_sim_node.programmes import PROGRAMMES, build_programme
-from hypothesis import given
-from hypothesis import strategies as st
 
 REDUCER = Reducer()
 

@@ -5,6 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.integrate import solve_ivp
+
 from hd_monitor.errors import ParameterError
 from hd_monitor.model import (
     Dynamics,
@@ -18,9 +22,6 @@ from hd_monitor.model import (
 from hd_monitor.reducer import Mount, Reducer
 from hd_sim_node.programme import Ripple, SpeedProgramme
 from hd_sim_node.rig import PHASE_STEP, Rig, Surroundings
-from hypothesis import given, settings
-from hypothesis import strategies as st
-from scipy.integrate import solve_ivp
 
 MODEL = ParametricModel(
     flexspline=StiffnessSeries((0.06, 0.03, 0.02)),

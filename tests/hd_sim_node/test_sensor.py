@@ -2,12 +2,13 @@
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
 from hd_monitor.model import ParametricModel
 from hd_sim_node.programme import SpeedProgramme
 from hd_sim_node.rig import Rig, Surroundings
 from hd_sim_node.sensor import Accelerometer, SensorSettings
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 RATE = 1000.0
 COUNT = 100_000

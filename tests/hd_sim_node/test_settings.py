@@ -3,6 +3,7 @@
 import math
 
 import pytest
+
 from hd_monitor.errors import GeometryError, ParameterError
 from hd_monitor.model import StiffnessSeries
 from hd_monitor.settings import PARAMETERS as MONITOR_PARAMETERS

@@ -4,11 +4,11 @@ import math
 
 import numpy as np
 import pytest
+
+from hd_monitor import contract
 from hd_monitor.errors import ParameterError
 from hd_sim_node.settings import RigSettings
 from hd_sim_node.simulation import Simulation
-
-from hd_monitor import contract
 
 BASE = {"programme": "fixed", "fixed.speed": 1600.0, "duration": 2.0, "sensor.noise": 0.0}
 

@@ -1,11 +1,12 @@
 """A simulation against a clock: nothing early, nothing twice, nothing lost, pauses and changes of pace included."""
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
 from hd_sim_node.settings import RigSettings
 from hd_sim_node.simulation import Simulation
 from hd_sim_node.stream import Stream
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 SECOND = 1_000_000_000
 SETTINGS = RigSettings.from_mapping({"programme": "fixed", "duration": 2.0, "seed": 1})

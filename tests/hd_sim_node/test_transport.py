@@ -4,9 +4,10 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hd_sim_node.transport import Transport, TransportSettings
 from hypothesis import given
 from hypothesis import strategies as st
+
+from hd_sim_node.transport import Transport, TransportSettings
 
 COUNT = 40_000
 DUE = np.arange(COUNT) * 1_000_000

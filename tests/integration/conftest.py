@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+
 from hd_monitor.contract import Block, pack_block
 
 MONITOR, RIG = "hd_monitor.ros.node", "hd_sim_node.node"

@@ -6,14 +6,14 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tests.hd_monitor.offline import recordings as rec
+
 from hd_monitor.adapters import MOTION_SOURCE, VIBRATION_SOURCES, Source
 from hd_monitor.diagnosis.status import status_of
 from hd_monitor.offline.bag import Bag
 from hd_monitor.offline.parameters import load_parameters
 from hd_monitor.offline.plan import Request, plan
 from hd_monitor.offline.replay import replay
-
-from tests.hd_monitor.offline import recordings as rec
 
 from .conftest import MONITOR, RIG, Bench, arguments_of
 

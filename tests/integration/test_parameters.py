@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+
 from hd_monitor.settings import PARAMETERS
 
 from .conftest import MONITOR, Bench, Feeder, arguments_of

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+
 from hd_monitor.model import growth_rate, steady_state
 from hd_sim_node.settings import RigSettings
 

@@ -3,6 +3,7 @@
 from typing import Any
 
 import pytest
+
 from hd_sim_node.settings import RigSettings
 
 from .conftest import ERROR, OK, QUICK, Bench, Shown

@@ -4,12 +4,12 @@ import re
 from pathlib import Path
 
 import pytest
+
+from hd_monitor import contract
 from hd_monitor.diagnosis.status import status_of
 from hd_monitor.diagnosis.verdict import Component, FaultCode
 from hd_monitor.monitor import Monitor
 from hd_monitor.settings import JointSettings
-
-from hd_monitor import contract
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = ROOT / "msgs_doc"

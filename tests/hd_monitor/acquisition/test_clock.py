@@ -3,9 +3,10 @@
 import numpy as np
 import numpy.typing as npt
 import pytest
-from hd_monitor.acquisition.clock import recover_clock
 from hypothesis import given
 from hypothesis import strategies as st
+
+from hd_monitor.acquisition.clock import recover_clock
 
 PERIOD = 1e-3
 

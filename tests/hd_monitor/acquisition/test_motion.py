@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
-from hd_monitor.acquisition.motion import MotionTrack, even_stamps
 from hypothesis import given
 from hypothesis import strategies as st
+
+from hd_monitor.acquisition.motion import MotionTrack, even_stamps
 
 
 def fed(times: np.ndarray, rows: np.ndarray, chunk: int = 10_000) -> MotionTrack:

@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
-from hd_monitor.acquisition.screening import screen
 from hypothesis import given
 from hypothesis import strategies as st
+
+from hd_monitor.acquisition.screening import screen
 
 TIMES = np.arange(1000) * 1e-3
 

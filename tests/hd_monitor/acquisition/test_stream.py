@@ -1,9 +1,10 @@
 """Buffers hand out everything once, up to a time, and decide lateness and clock jumps by their own stamps."""
 
 import numpy as np
-from hd_monitor.acquisition.stream import CLOCK_JUMP, LATENESS, StampedBuffer
 from hypothesis import given
 from hypothesis import strategies as st
+
+from hd_monitor.acquisition.stream import CLOCK_JUMP, LATENESS, StampedBuffer
 
 MS = 1_000_000
 

@@ -2,11 +2,12 @@ import math
 
 import numpy as np
 import pytest
-from hd_monitor.analysis.line_regression import fit_lines, line_columns
-from hd_monitor.errors import ParameterError
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
+
+from hd_monitor.analysis.line_regression import fit_lines, line_columns
+from hd_monitor.errors import ParameterError
 
 PAIR = np.array([160.0, 162.0])
 

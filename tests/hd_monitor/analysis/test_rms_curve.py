@@ -1,8 +1,9 @@
 import numpy as np
 import pytest
-from hd_monitor.analysis.rms_curve import RmsAccumulator
 from hypothesis import given
 from hypothesis import strategies as st
+
+from hd_monitor.analysis.rms_curve import RmsAccumulator
 
 
 def test_a_sine_has_its_amplitude_over_the_root_of_two():

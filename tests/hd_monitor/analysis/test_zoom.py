@@ -2,12 +2,13 @@ import math
 
 import numpy as np
 import pytest
-from hd_monitor.analysis.zoom import Zoom, zoom_spectrum
-from hd_monitor.errors import ParameterError
-from hd_monitor.reducer import LinePair, Reducer
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.signal import get_window
+
+from hd_monitor.analysis.zoom import Zoom, zoom_spectrum
+from hd_monitor.errors import ParameterError
+from hd_monitor.reducer import LinePair, Reducer
 
 PERIOD = 1e-3
 RIG = Reducer(flexspline_teeth=160, circular_spline_teeth=162)

@@ -2,9 +2,10 @@ import math
 
 import numpy as np
 import pytest
+from scipy.optimize import least_squares
+
 from hd_monitor.analysis.zoom import zoom_spectrum
 from hd_monitor.reducer import LinePair
-from scipy.optimize import least_squares
 
 PERIOD = 1.0 / 12_000.0
 PAIR = LinePair(119.70, 120.00)

@@ -5,15 +5,21 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hd_monitor.cli.main import main
-
 from tests.hd_monitor.offline import recordings as rec
+
+from hd_monitor.cli.main import main
 
 
 @pytest.fixture(scope="module")
 def bags(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
     folder = tmp_path_factory.mktemp("pair")
-    steps: dict[str, Any] = {"programme": "dwell", "dwell__first": 1000.0, "dwell__last": 1400.0, "dwell__time": 4.0, "cycles": 1}
+    steps: dict[str, Any] = {
+        "programme": "dwell",
+        "dwell__first": 1000.0,
+        "dwell__last": 1400.0,
+        "dwell__time": 4.0,
+        "cycles": 1,
+    }
     before = rec.write(folder / "before", rec.simulated(**steps, defect="circular_spline"))
     after = rec.write(folder / "after", rec.simulated(**steps, defect="none", seed=5))
     return before, after

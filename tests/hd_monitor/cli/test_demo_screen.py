@@ -2,6 +2,7 @@ import io
 import re
 
 import pytest
+
 from hd_monitor.cli.demo_screen import Screen, View
 
 

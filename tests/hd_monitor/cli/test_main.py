@@ -2,6 +2,7 @@ import subprocess
 import sys
 
 import pytest
+
 from hd_monitor.cli.main import COMMANDS, main
 
 

@@ -1,6 +1,7 @@
 from pathlib import Path
 
 import pytest
+
 from hd_monitor.cli.main import main
 from hd_monitor.cli.parameters import markdown
 from hd_monitor.settings import NODE_PARAMETERS, PARAMETERS, set_aside_foreign, split_joints

@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hd_monitor.cli.main import main
-
 from tests.hd_monitor.offline import recordings as rec
+
+from hd_monitor.cli.main import main
 
 
 @pytest.fixture(scope="module")

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+
 from hd_monitor.diagnosis.judge import Judge, Limits
 from hd_monitor.diagnosis.verdict import Component, FaultCode, Level, Verdict
 from hd_monitor.identification.result import Identification

@@ -2,13 +2,14 @@
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.stats import norm
+
 from hd_monitor.diagnosis.probability import component_probabilities, name_component
 from hd_monitor.diagnosis.verdict import Component
 from hd_monitor.identification.result import Identification
 from hd_monitor.reducer import LinePair
-from hypothesis import given
-from hypothesis import strategies as st
-from scipy.stats import norm
 
 
 def evidence(cs: float, fs: float, std: float, correlation: float = 0.0) -> Identification:

@@ -1,4 +1,5 @@
 import pytest
+
 from hd_monitor.identification.agreement import DirectionEvidence, pooled_dominance, reasons_against_naming
 from hd_monitor.reducer import LinePair
 

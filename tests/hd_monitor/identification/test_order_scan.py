@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+
 from hd_monitor.acquisition.record import JointSamples
 from hd_monitor.identification.order_scan import PARTS, OrderScan
 from hd_monitor.identification.stroke_sums import PairOrders

@@ -3,6 +3,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy import stats
+
 from hd_monitor.acquisition.record import JointSamples
 from hd_monitor.identification.pair_evidence import estimate_pair, solve_lines
 from hd_monitor.identification.stroke_sums import (
@@ -16,7 +18,6 @@ from hd_monitor.identification.stroke_sums import (
 from hd_monitor.identification.strokes import StrokeCutter
 from hd_monitor.identification.whitening import learn_whitening
 from hd_monitor.reducer import LinePair
-from scipy import stats
 
 PAIR = LinePair(200.0, 202.0)
 ORDERS = PairOrders.around(PAIR, 1, (101.0, 202.0))

@@ -2,6 +2,10 @@ import math
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy import stats
+
 from hd_monitor.acquisition.record import JointSamples
 from hd_monitor.diagnosis import Component, Judge, Limits
 from hd_monitor.diagnosis.status import status_of
@@ -9,9 +13,6 @@ from hd_monitor.identification.sensorless import SensorlessIdentifier
 from hd_monitor.monitor import Monitor
 from hd_monitor.reducer import LinePair
 from hd_monitor.settings import JointSettings
-from hypothesis import given, settings
-from hypothesis import strategies as st
-from scipy import stats
 
 
 def settings_of(**changes):

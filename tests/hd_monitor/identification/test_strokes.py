@@ -2,6 +2,9 @@ import math
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
 from hd_monitor.acquisition.record import JointSamples, Record
 from hd_monitor.identification.strokes import (
     HIGHEST_SHARE,
@@ -11,8 +14,6 @@ from hd_monitor.identification.strokes import (
     one_speed,
     samples_of_records,
 )
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 ORDERS = (200.0, 202.0)
 

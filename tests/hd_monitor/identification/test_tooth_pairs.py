@@ -2,6 +2,7 @@ import math
 
 import numpy as np
 import pytest
+
 from hd_monitor.acquisition.record import JointSamples, Record
 from hd_monitor.errors import ParameterError
 from hd_monitor.identification.tooth_pairs import ToothPair, default_candidates, rank_tooth_pairs

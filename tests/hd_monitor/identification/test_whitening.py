@@ -1,7 +1,8 @@
 import numpy as np
 import pytest
-from hd_monitor.identification.whitening import TAPS, learn_whitening, settled, whiten
 from scipy.signal import lfilter
+
+from hd_monitor.identification.whitening import TAPS, learn_whitening, settled, whiten
 
 
 def red(rng, size):

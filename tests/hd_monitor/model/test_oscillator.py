@@ -4,11 +4,12 @@ import math
 
 import numpy as np
 import pytest
-from hd_monitor.errors import ParameterError
-from hd_monitor.model import Dynamics, Oscillator, gauss_times
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
+
+from hd_monitor.errors import ParameterError
+from hd_monitor.model import Dynamics, Oscillator, gauss_times
 
 DYNAMICS = Dynamics(natural_frequency=3.0, damping_ratio=0.04)
 OMEGA = DYNAMICS.angular_frequency

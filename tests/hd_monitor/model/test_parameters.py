@@ -5,11 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
 from hd_monitor.errors import ParameterError
 from hd_monitor.model import Dynamics, ParametricModel, StiffnessSeries, Torque, table_1
 from hd_monitor.reducer import Reducer
-from hypothesis import given
-from hypothesis import strategies as st
 
 ANGLES = np.linspace(-7.0, 7.0, 501)
 REDUCERS = st.builds(

@@ -1,9 +1,10 @@
 import numpy as np
 import pytest
-from hd_monitor.errors import ParameterError
-from hd_monitor.model.pitch_error import MESHED_FRACTION, PitchErrors
 from hypothesis import given
 from hypothesis import strategies as st
+
+from hd_monitor.errors import ParameterError
+from hd_monitor.model.pitch_error import MESHED_FRACTION, PitchErrors
 
 LOBE = np.linspace(0.0, 2.0 * np.pi, 400, endpoint=False)
 ERRORS = st.lists(st.floats(-1e-4, 1e-4), min_size=8, max_size=200)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from hd_monitor.errors import ParameterError
 from hd_monitor.model import ParametricModel, StiffnessSeries, Torque, table_1
 from hd_monitor.model.simulation import constant_speed, linear_sweep, simulate

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+
 from hd_monitor.errors import ParameterError
 from hd_monitor.model import (
     Dynamics,

@@ -1,10 +1,11 @@
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
 from hd_monitor.errors import ParameterError
 from hd_monitor.model import ParametricModel, StiffnessSeries
 from hd_monitor.model.static_test import StaticTestBed, fit_stiffness
-from hypothesis import given
-from hypothesis import strategies as st
 
 EVERY_30 = np.deg2rad(np.arange(0.0, 361.0, 30.0))
 IDEAL = StaticTestBed(force_resolution=0.0, dial_resolution=0.0)

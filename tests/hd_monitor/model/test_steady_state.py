@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+
 from hd_monitor.errors import ParameterError
 from hd_monitor.model import (
     Dynamics,

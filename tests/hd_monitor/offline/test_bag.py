@@ -7,12 +7,12 @@ from collections import Counter
 from pathlib import Path
 
 import pytest
-from hd_monitor.offline.bag import Bag
-from hd_monitor.offline.errors import BagError
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
 from tests.hd_monitor.offline import recordings as rec
+
+from hd_monitor.offline.bag import Bag
+from hd_monitor.offline.errors import BagError
 
 BLOCKS, STATES = "/torsional_acceleration/block", "/joint_states"
 BOTH = (BLOCKS, STATES)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from hd_monitor.offline.comparison import compare
 from hd_monitor.offline.errors import BagError
 

@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+
 from hd_monitor.errors import ParameterError
 from hd_monitor.offline.parameters import load_parameters, parse_override
 

@@ -5,6 +5,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tests.hd_monitor.offline import recordings as rec
+
 from hd_monitor.diagnosis.status import status_of
 from hd_monitor.diagnosis.verdict import Component, FaultCode
 from hd_monitor.offline import bag as bag_module
@@ -12,8 +14,6 @@ from hd_monitor.offline.bag import Bag
 from hd_monitor.offline.errors import BagError
 from hd_monitor.offline.plan import Request, plan
 from hd_monitor.offline.replay import Replayed, replay
-
-from tests.hd_monitor.offline import recordings as rec
 
 FAST: dict[str, Any] = {"programme": "fixed", "fixed__speed": 1200.0, "duration": 12.0}
 

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+
 from hd_monitor.acquisition.record import Record
 from hd_monitor.offline.report.lines_by_speed import LinesBySpeed
 from hd_monitor.offline.report.phase_trace import phase_trace

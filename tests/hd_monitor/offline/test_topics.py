@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 
 import pytest
+
 from hd_monitor.offline.errors import BagError
 from hd_monitor.offline.salvage import RawTopic
 from hd_monitor.offline.topics import JointTopics, TopicFinder

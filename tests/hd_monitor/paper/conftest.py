@@ -4,6 +4,7 @@ from collections.abc import Callable
 from functools import cache
 
 import pytest
+
 from hd_monitor.paper.cases import Cases, load_paper_cases
 from hd_monitor.paper.claim import Outcome
 from hd_monitor.paper.exhibit import Exhibit

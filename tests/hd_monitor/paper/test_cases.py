@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+
 from hd_monitor.errors import HdMonitorError
 from hd_monitor.paper.cases import Cases, has_cases, load_own_case, load_paper_cases, paper_file
 from hd_monitor.reducer import Mount

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import pytest
+
 from hd_monitor.model import StiffnessSeries, steady_state
 from hd_monitor.paper.claim import Outcome
 from hd_monitor.paper.line_figures import REVOLUTIONS, equation_5, figure_8, line_distance, peak_near

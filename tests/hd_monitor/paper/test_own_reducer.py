@@ -2,6 +2,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+
 from hd_monitor.model import scale_defects
 from hd_monitor.paper.cases import Range, load_own_case, paper_file
 from hd_monitor.paper.own_reducer import FIGURES, show

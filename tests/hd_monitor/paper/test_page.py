@@ -3,6 +3,7 @@ from html.parser import HTMLParser
 
 import numpy as np
 import pytest
+
 from hd_monitor.paper.claim import Claim
 from hd_monitor.paper.exhibit import Curve, Exhibit, Mark, Panel, Surface
 

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+
 from hd_monitor.model import Dynamics, StiffnessSeries
 from hd_monitor.paper.claim import Outcome
 from hd_monitor.paper.property_figures import figure_16, property_curve

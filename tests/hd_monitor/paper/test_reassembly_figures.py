@@ -1,6 +1,7 @@
 """Figures 18 to 20."""
 
 import pytest
+
 from hd_monitor.diagnosis.verdict import Component
 from hd_monitor.paper.claim import Outcome
 from hd_monitor.paper.diagnosis import diagnose

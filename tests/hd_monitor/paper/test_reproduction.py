@@ -1,6 +1,7 @@
 import re
 
 import pytest
+
 from hd_monitor.errors import ParameterError
 from hd_monitor.paper.claim import Claim, Outcome
 from hd_monitor.paper.exhibit import Exhibit

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+
 from hd_monitor.model import StiffnessSeries
 from hd_monitor.paper.claim import Outcome
 from hd_monitor.paper.stiffness_figures import (

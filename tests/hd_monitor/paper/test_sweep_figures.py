@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+
 from hd_monitor.model import growth_rate
 from hd_monitor.model.oscillator import Oscillator, gauss_times
 from hd_monitor.model.simulation import linear_sweep

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+
 from hd_monitor.model import StiffnessSeries
 from hd_monitor.paper import printed
 from hd_monitor.paper.claim import Outcome

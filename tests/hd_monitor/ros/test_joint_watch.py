@@ -4,6 +4,7 @@ import math
 from typing import Any
 
 import pytest
+
 from hd_monitor.monitor import Monitor
 from hd_monitor.ros.joint_watch import MOTION, VIBRATION, JointWatch
 from hd_monitor.settings import JointSettings

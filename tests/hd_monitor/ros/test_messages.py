@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+
 from hd_monitor.analysis.rms_curve import RmsCurve, SpeedBin
 from hd_monitor.analysis.zoom import zoom_spectrum
 from hd_monitor.diagnosis.status import Status
@@ -11,8 +12,9 @@ pytestmark = pytest.mark.ros
 @pytest.mark.parametrize("level", [0, 1, 2])
 def test_a_status_survives_the_wire(level: int) -> None:
     from diagnostic_msgs.msg import DiagnosticStatus
-    from hd_monitor.ros.messages import diagnostic_status
     from rclpy.serialization import deserialize_message, serialize_message
+
+    from hd_monitor.ros.messages import diagnostic_status
 
     status = Status(level=level, message="±", hardware_id="A1", values=(("speed (rpm)", "850.0"),))
     message = diagnostic_status(status, "/node: joint reducer")

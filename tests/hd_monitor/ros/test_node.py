@@ -13,8 +13,9 @@ def make_node(ros_context: Any, peer: Any) -> Iterator[Callable[..., Any]]:
     nodes: list[Any] = []
 
     def make(**parameters: Any) -> Any:
-        from hd_monitor.ros.node import HdMonitorNode
         from rclpy.parameter import Parameter
+
+        from hd_monitor.ros.node import HdMonitorNode
 
         overrides = [Parameter(name.replace("__", "."), value=value) for name, value in parameters.items()]
         node = HdMonitorNode(context=ros_context, parameter_overrides=overrides)

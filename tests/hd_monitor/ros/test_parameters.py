@@ -1,4 +1,5 @@
 import pytest
+
 from hd_monitor.errors import ParameterError
 from hd_monitor.settings import PARAMETERS, set_aside_foreign, split_joints
 

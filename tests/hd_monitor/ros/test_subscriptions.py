@@ -3,6 +3,7 @@
 from typing import Any
 
 import pytest
+
 from hd_monitor.adapters import Source
 from hd_monitor.cdr import decode_accel_stamped
 
