@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from itertools import groupby
 
 import numpy as np
 import numpy.typing as npt
@@ -67,6 +68,7 @@ class Monitor:
         self._timeline = Timeline(needed, self._period, self._timeout)
         self._recorder = Recorder(settings)
         self._block: Block | None = None
+        self._blocks: list[Block] = []
         self._seen: dict[str, int] = {}
         self._useful = 0
         self._latest: Assessment | None = None
@@ -84,6 +86,7 @@ class Monitor:
 
     def add_vibration(self, stamps: npt.ArrayLike, values: npt.ArrayLike) -> None:
         """Add single samples of θ'' [rad/s²] with their stamps [ns], both of shape (N,), in the order they came."""
+        self._unpack_blocks()
         self._vibration.add(np.asarray(stamps, dtype=np.int64), np.asarray(values, dtype=np.float64).reshape(-1, 1))
 
     def add_block(self, block: Block) -> None:
@@ -96,8 +99,17 @@ class Monitor:
             else:
                 self.reject(f"two different blocks have the number {block.sequence}: are there two publishers?")
             return
-        offsets = np.rint(np.arange(len(block.samples)) * (block.period * NANOSECONDS)).astype(np.int64)
-        self.add_vibration(block.stamp + offsets, block.samples)
+        self._blocks.append(block)
+
+    def _unpack_blocks(self) -> None:
+        """Hand over the samples of the blocks that have gathered; many at once cost little more than one."""
+        blocks, self._blocks = self._blocks, []
+        for (period, size), alike in groupby(blocks, key=lambda block: (block.period, block.samples.size)):
+            group = list(alike)
+            offsets = np.rint(np.arange(size) * (period * NANOSECONDS)).astype(np.int64)
+            starts = np.array([block.stamp for block in group], dtype=np.int64)
+            samples = np.concatenate([block.samples for block in group])
+            self._vibration.add((starts[:, None] + offsets).ravel(), samples.reshape(-1, 1))
 
     def add_motion(
         self, stamps: npt.ArrayLike, position: npt.ArrayLike, velocity: npt.ArrayLike, effort: npt.ArrayLike
@@ -122,6 +134,7 @@ class Monitor:
 
     def advance(self) -> list[Assessment]:
         """Assess every period that has become complete; oldest first."""
+        self._unpack_blocks()
         done = []
         while (window := self._timeline.next()) is not None:
             done.append(self._assess(window))

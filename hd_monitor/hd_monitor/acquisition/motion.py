@@ -47,6 +47,8 @@ def even_stamps(times: FloatArray, rows: FloatArray) -> FloatArray:
     """
     if times.size < _FEWEST_TO_EVEN or not np.isfinite(rows[:, :2]).all():
         return times
+    if float(np.ptp(np.diff(times))) < _JITTER_NOTICED:
+        return times
     clock = recover_clock(times)
     if clock is None or clock.order.size != times.size or clock.jitter < _JITTER_NOTICED:
         return times
