@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
+import hypothesis
 import pytest
 
 HAVE_ROS = importlib.util.find_spec("rclpy") is not None
@@ -22,6 +23,10 @@ PATIENCE = 60.0
 """Seconds after which a wait counts as hanging: a guard against a stuck run, not a measure of speed."""
 
 _reserved: list[socket.socket] = []
+
+# The same examples in every run, and no verdict on how fast the machine is: what fails, fails for everyone.
+hypothesis.settings.register_profile("project", deadline=None, derandomize=True)
+hypothesis.settings.load_profile("project")
 
 
 def _reserve_domain() -> int:

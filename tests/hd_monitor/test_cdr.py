@@ -76,7 +76,7 @@ def stamp(head: tuple[int, int, str]) -> int:
 
 
 @pytest.mark.parametrize(("write", "read"), [(accel, cdr.decode_accel_stamped), (imu, cdr.decode_imu)])
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(rows=st.lists(st.tuples(headers, triples, triples, st.booleans()), max_size=8))
 def test_vectors_come_back_in_order_whatever_frames_and_byte_orders_are_mixed(
     write: Any, read: Any, rows: list[Any]
@@ -98,7 +98,7 @@ def states(draw: st.DrawFn) -> tuple[Any, list[str], list[list[float]], bool]:
     return draw(headers), names, arrays, draw(st.booleans())
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=80)
 @given(rows=st.lists(states(), max_size=8))
 def test_joint_states_come_back_by_name_with_nan_for_absent_arrays(rows: list[Any]) -> None:
     messages = [joint_state(head, names, arrays, little_endian=little) for head, names, arrays, little in rows]
@@ -116,7 +116,7 @@ def test_joint_states_come_back_by_name_with_nan_for_absent_arrays(rows: list[An
                 np.testing.assert_array_equal(got[row], expected)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     rows=st.lists(
         st.tuples(
@@ -162,7 +162,7 @@ def test_a_message_cut_off_anywhere_is_a_fault_and_costs_no_other_message() -> N
             assert np.concatenate([group.place for group in groups]).tolist() == [0, 2]
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(noise=st.binary(max_size=120))
 def test_noise_is_never_more_than_a_fault(noise: bytes) -> None:
     for message in (noise, b"\0\1\0\0" + noise):

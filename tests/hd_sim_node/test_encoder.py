@@ -31,7 +31,7 @@ def test_reports_angle_and_speed_of_the_output():
     np.testing.assert_allclose(batch.velocity, rig.speed(batch.times), rtol=1e-14)
 
 
-@settings(deadline=None, max_examples=25)
+@settings(max_examples=25)
 @given(
     st.lists(st.integers(1, 300), min_size=1, max_size=8),
     st.floats(0.7, 3000.0),

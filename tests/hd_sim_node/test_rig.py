@@ -113,7 +113,7 @@ def test_the_papers_beat_is_in_the_simulated_signal():
     np.testing.assert_allclose(frequencies[two], [850 / 30, 850 / 30 * 162 / 160], atol=0.05)
 
 
-@settings(deadline=None, max_examples=25)
+@settings(max_examples=25)
 @given(st.lists(st.integers(1, 400), min_size=1, max_size=8), st.sampled_from([100.0, 1000.0, 3333.3]))
 def test_does_not_depend_on_how_it_is_cut(cuts, rate):
     def rig():

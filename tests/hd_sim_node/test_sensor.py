@@ -97,7 +97,7 @@ def test_jitter_has_its_standard_deviation_and_does_not_add_up():
 DISTURBED = SensorSettings(noise=0.2, spike_rate=30.0, spike_size=5.0, jitter=1e-4, full_scale=2.0)
 
 
-@settings(deadline=None, max_examples=20)
+@settings(max_examples=20)
 @given(st.lists(st.integers(1, 200), min_size=1, max_size=6))
 def test_cuts_do_not_change_the_random_numbers(cuts):
     whole = Accelerometer(DISTURBED, rate=RATE, seed=5)

@@ -28,7 +28,7 @@ def test_hands_out_nothing_before_it_is_started():
     assert handed(stream(), 100.0) == []
 
 
-@settings(deadline=None, max_examples=30)
+@settings(max_examples=30)
 @given(st.lists(st.floats(0.0, 0.7), min_size=1, max_size=10), st.sampled_from([0.5, 1.0, 8.0]))
 def test_hands_out_each_message_once_when_it_is_due(waits, scale):
     source = stream(scale)

@@ -13,7 +13,7 @@ import hd_monitor
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ("hd_monitor", "hd_sim_node")
-EXECUTABLES = (("hd_monitor", "hd-monitor"), ("hd_monitor", "hd_monitor_node"), ("hd_sim_node", "hd_sim_node"))
+EXECUTABLES = sorted((path.parents[1].name, path.name) for path in ROOT.glob("hd_*/exec/*"))
 MARKERS = Path("share/ament_index/resource_index/packages")
 
 needs_install = pytest.mark.skipif(

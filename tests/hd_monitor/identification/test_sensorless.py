@@ -103,7 +103,7 @@ def test_directions_that_contradict_each_other_leave_it_undetermined():
     assert "do not agree on the larger line" in identifier.estimate().blockers[0]
 
 
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=10)
 @given(st.lists(st.integers(0, 3000), max_size=10), st.integers(0, 2**16))
 def test_the_result_does_not_depend_on_how_the_messages_are_chunked(cuts, seed):
     whole = swinging(seconds=30.0, seed=seed)
@@ -120,7 +120,7 @@ def test_the_result_does_not_depend_on_how_the_messages_are_chunked(cuts, seed):
     assert chunked.directions == identify(whole, settings_of()).directions
 
 
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=10)
 @given(st.floats(1e-4, 1e4), st.sampled_from([1.0, -1.0]), st.integers(-3, 3))
 def test_units_signs_and_whole_turns_do_not_matter(unit, sign, turns):
     whole = swinging(0.3, 0.15, seconds=40.0)

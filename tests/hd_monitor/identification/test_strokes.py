@@ -53,7 +53,7 @@ def test_strokes_keep_to_one_direction_and_alternate():
         assert stroke.duration <= LONGEST
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(st.lists(st.integers(0, 4000), max_size=12), st.booleans(), st.sampled_from([100.0, 500.0]))
 def test_the_strokes_do_not_depend_on_how_the_messages_are_chunked(cuts, with_speed, rate):
     whole = swinging(rate, 20.0, with_speed=with_speed)

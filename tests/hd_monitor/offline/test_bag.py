@@ -169,7 +169,7 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(name=st.sampled_from(["a.mcap", "a.db3"]), seed=st.integers(0, 2**32), hits=st.integers(1, 40))
 def test_damage_anywhere_never_ends_in_anything_but_a_bag_error(
     tmp_path_factory: pytest.TempPathFactory, written: Path, name: str, seed: int, hits: int
