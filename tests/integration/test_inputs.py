@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from .conftest import QUICK, Bench
+from .conftest import OK, QUICK, Bench
 from .test_verdicts import settled
 
 pytestmark = pytest.mark.ros
@@ -60,3 +60,15 @@ def test_output_counting_backwards(bench: Bench) -> None:
     bench.monitor()
     bench.rig("defect:=flexspline", "joint_states.reversed:=true", *QUICK)
     assert bench.until_status(settled, "a settled verdict").component == "flexspline"
+
+
+def test_joint_states_alone(bench: Bench) -> None:
+    bench.monitor("input.source:=joint_effort", "input.expected_rate:=5000.0")
+    words = [word for word in QUICK if not word.startswith("wait_for")]  # for the vibration it would wait in vain
+    bench.rig(
+        "defect:=flexspline", "publish:=none", "joint_states.effort:=reaction", "joint_states.rate:=500.0", *words
+    )
+    status = bench.until_status(lambda s: s.component != "undetermined", "a verdict")
+    assert (status.component, status.level) == ("flexspline", OK)
+    assert status.values["index kind"] == "relative"
+    assert status.number("flexspline index (%)") > 3 * status.number("circular spline index (%)")

@@ -12,13 +12,14 @@ from typing import Any
 
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
-from hd_sim_node.node_parameters import NODE_PARAMETERS as RIG_NODE_PARAMETERS
-from hd_sim_node.settings import RigSettings, pick
 from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from rclpy.signals import SignalHandlerOptions
+
+from hd_sim_node.node_parameters import NODE_PARAMETERS as RIG_NODE_PARAMETERS
+from hd_sim_node.settings import RigSettings, pick
 
 from .. import contract
 from ..diagnosis.probability import name_component
@@ -118,6 +119,8 @@ class _Plan:
         self.domain: int = free_domain() if arguments.domain is None else arguments.domain
         self.simulator = ("--ros-args", *_pairs([f"defect:={arguments.defect}", *arguments.sim]))
         self.simulator += ("-p", f"time_scale:={arguments.time_scale}", "-p", "wait_for_subscribers:=1")
+        if self._settings.sensorless:  # nobody would subscribe to the vibration that the rig waits to publish
+            self.simulator += ("-p", "publish:=none")
         # Loss counts by the stamps: where they run fast, a delay of the machine looks as many times as long.
         timeout = max(1.0, arguments.time_scale) * INPUT_TIMEOUT
         self.monitor = ("--ros-args", "-p", f"input.timeout:={timeout}", *_pairs(arguments.monitor))
@@ -202,7 +205,8 @@ class _Listener:
 @contextmanager
 def _listening(domain: int) -> Iterator[_Listener]:
     context = Context()
-    rclpy.init(context=context, domain_id=domain, signal_handler_options=SignalHandlerOptions.NO)
+    # Without words of its own: it would take NAME:=VALUE from the command line for remappings.
+    rclpy.init(args=[], context=context, domain_id=domain, signal_handler_options=SignalHandlerOptions.NO)
     listener = _Listener(context)
     try:
         yield listener
@@ -260,14 +264,16 @@ def _stay(children: Children, screen: Screen, listener: _Listener) -> None:
 def _conclude(plan: _Plan, screen: Screen, view: View) -> bool:
     """Print the final status, where it came from, and whether it names what was simulated."""
     component, model = view.values.get("component", ""), plan.rig.model
+    relative = "relative only, " if view.values.get("index kind") == "relative" else ""
+    simulated = LinePair(100 * model.circular_spline.index, 100 * model.flexspline.index)
     rows = (
         ("component", component),
         ("fault_code", view.values.get("fault_code", "")),
         ("level", screen.colour(view.word)),
-        ("flexspline", f"{view.percent('flexspline index')}   (simulated {100 * model.flexspline.index:.2f} %)"),
+        ("flexspline", f"{view.percent('flexspline index')}   ({relative}simulated {simulated.flexspline:.2f} %)"),
         (
             "circular spline",
-            f"{view.percent('circular spline index')}   (simulated {100 * model.circular_spline.index:.2f} %)",
+            f"{view.percent('circular spline index')}   ({relative}simulated {simulated.circular_spline:.2f} %)",
         ),
         ("limits", f"warn {view.values.get('warn limit (%)')} %, error {view.values.get('error limit (%)')} %"),
     )
