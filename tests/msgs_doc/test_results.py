@@ -1,0 +1,93 @@
+"""The page on result files has every key that the commands write, and its example is what they write."""
+
+import json
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from hd_monitor.cli.main import main
+from hd_monitor.offline import comparison
+
+pytest.importorskip("rosbags")
+from hd_sim_node import bag_command
+
+PAGE = (Path(__file__).resolve().parents[2] / "msgs_doc" / "results.md").read_text(encoding="utf-8")
+
+
+def keys_below(heading: str) -> list[str]:
+    """Keys of the first table below a heading, in their order."""
+    table = re.search(
+        rf"^#+ {re.escape(heading)}\n[^#]*?^\| key \| value \|\n\|---\|---\|\n(.*?)\n\n", PAGE + "\n", re.M | re.S
+    )
+    assert table is not None, heading
+    return [key for row in table[1].splitlines() for key in re.findall(r"`([^`]+)`", row.split("|")[1])]
+
+
+def commands() -> list[list[str]]:
+    block = PAGE.partition("### Example")[2].split("```")[1]
+    return [line.split() for line in block.strip().splitlines()]
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+    """Run the page's own commands and return what they write."""
+    simulate, replay = commands()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(tmp_path_factory.mktemp("results"))
+        assert simulate[0] == "hd-sim-bag"
+        assert bag_command.main(simulate[1:]) == 0
+        assert replay[0] == "hd-monitor"
+        assert main(replay[1:]) == 0
+        content: dict[str, Any] = json.loads(Path(replay[-1]).read_text(encoding="utf-8"))
+    return content
+
+
+@pytest.fixture(scope="module")
+def compared(written: dict[str, Any]) -> dict[str, Any]:
+    return comparison.as_dict(comparison.compare(written, written), "run", "run")
+
+
+def test_every_key_of_a_replay_is_documented(written: dict[str, Any]) -> None:
+    joint = written["joints"][0]
+    assert sorted(written) == sorted(keys_below("replay"))
+    assert sorted(joint) == sorted(keys_below("Each joint"))
+    assert sorted(joint["verdict"]) == sorted(keys_below("Verdict"))
+    assert sorted(joint["timeline"][-1]) == sorted([*keys_below("Verdict"), *keys_below("Each entry of timeline")])
+    assert sorted(joint["lines"][0]) == sorted(keys_below("Each entry of lines"))
+    assert sorted(joint["rms_curve"][0]) == sorted(keys_below("Each entry of rms_curve"))
+    assert sorted(joint["quality"]) == sorted(keys_below("Quality"))
+
+
+def test_every_key_of_a_comparison_is_documented(compared: dict[str, Any]) -> None:
+    joint = compared["joints"][0]
+    assert sorted(compared) == sorted(keys_below("compare"))
+    assert sorted(joint) == sorted(keys_below("Each compared joint"))
+    assert sorted(joint["indexes"][0]) == sorted(keys_below("Each entry of indexes"))
+    assert sorted(joint["before"]) == sorted(keys_below("Verdict"))
+
+
+def leaves(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
+    """All plain values in nested lists and mappings; a list's entries by one path, since the example has fewer."""
+    if isinstance(value, dict):
+        for key, item in value.items():
+            yield from leaves(item, f"{path}.{key}")
+    elif isinstance(value, list):
+        for item in value:
+            yield from leaves(item, f"{path}[]")
+    else:
+        yield path, value
+
+
+def test_the_example_is_what_the_commands_write(written: dict[str, Any]) -> None:
+    example = json.loads(PAGE.partition("```json\n")[2].partition("```")[0])
+    kinds = {path: type(value) for path, value in leaves(written)}
+    assert {path: type(value) for path, value in leaves(example)}.items() <= kinds.items()
+    shown, verdict = example["joints"][0]["verdict"], written["joints"][0]["verdict"]
+    for name in ("component", "level", "level_name", "fault_code", "samples", "gaps"):
+        assert shown[name] == verdict[name]
+    for name in ("flexspline_index", "circular_spline_index"):
+        assert shown[name] == pytest.approx(verdict[name], rel=0.02)
+    assert shown["travel_deg"] == pytest.approx(verdict["travel_deg"], rel=0.05)
