@@ -36,6 +36,8 @@ class Monitor:
     joint : str
         Name of the joint, for messages.
     settings : JointSettings
+    identifier : Identifier or SensorlessIdentifier, optional
+        One that goes on with what it knows, from an earlier recording of the same joint say.
 
     Notes
     -----
@@ -53,7 +55,9 @@ class Monitor:
     []
     """
 
-    def __init__(self, joint: str, settings: JointSettings) -> None:
+    def __init__(
+        self, joint: str, settings: JointSettings, identifier: Identifier | SensorlessIdentifier | None = None
+    ) -> None:
         self.joint = joint
         self.settings = settings
         self._reducer = settings.reducer
@@ -73,6 +77,7 @@ class Monitor:
         self._useful = 0
         self._latest: Assessment | None = None
         self._begin_evidence()
+        self._identifier = identifier or self._identifier
 
     def _begin_evidence(self) -> None:
         settings = self.settings
@@ -258,6 +263,12 @@ class Monitor:
         speed = self._speed(harvest)
         if not speed >= self.settings["analysis.minimum_speed"]:
             return "The joint has not turned enough yet: the lines show in motion only"
+        rate = self._recorder.quality.rate
+        if not self.settings.sensorless and self._reducer.line_frequencies(speed).circular_spline > 0.5 * rate:
+            return (
+                f"At {speed:.0f} rpm all lines lie above half the sampling rate of {rate:.0f} Hz: check that positions "
+                "are in rad on the output side, or sample faster"
+            )
         return "Not enough motion seen yet: let the joint turn on"
 
     def _speed(self, harvest: Harvest) -> float:

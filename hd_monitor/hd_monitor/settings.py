@@ -214,14 +214,14 @@ PARAMETERS: tuple[Parameter, ...] = (
     ),
     Parameter(
         name="diagnosis.confirm_count",
-        default=3,
+        default=2,
         low=1,
         high=100,
         description="verdicts (N) that must agree before the status changes",
     ),
     Parameter(
         name="diagnosis.confirm_window",
-        default=5,
+        default=3,
         low=1,
         high=100,
         description="number of last verdicts (M) looked at for that",

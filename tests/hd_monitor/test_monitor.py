@@ -284,6 +284,18 @@ def test_a_standing_joint_is_undetermined_and_says_why() -> None:
     assert "turn" in verdict.reason
 
 
+def test_positions_in_degrees_are_suspected(recording: Recording) -> None:
+    monitor = Monitor("joint", SETTINGS)
+    wrong = np.degrees(recording.position), np.degrees(recording.velocity)
+    monitor.add_motion(recording.joint_stamps, *wrong, recording.effort)
+    for block in recording.blocks():
+        monitor.add_block(block)
+    monitor.finish()
+    verdict = latest(monitor).verdict
+    assert verdict.component is Component.UNDETERMINED
+    assert "in rad" in verdict.reason
+
+
 def test_a_recording_shorter_than_a_period_is_assessed(recording: Recording) -> None:
     monitor = Monitor("joint", SETTINGS)
     recording.feed_motion(monitor, slice(0, 60))

@@ -130,7 +130,7 @@ class Judge:
         if evidence is None:
             return self._undetermined(missing)
         if evidence.blockers:
-            return self._undetermined("; ".join(evidence.blockers), self._magnitude(evidence))
+            return self._undetermined("; ".join(evidence.blockers))  # nor do blocked indexes carry a level
         if evidence.relative:
             return self._assess_relative(evidence)
         limits = self._limits

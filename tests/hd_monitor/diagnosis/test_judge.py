@@ -52,7 +52,7 @@ def test_no_evidence_is_undetermined_and_says_what_is_missing() -> None:
 
 def test_blockers_forbid_a_name() -> None:
     verdict = settled(Judge(LIMITS), evidence(0.01, 0.10, blockers=("only 20° of travel, 90° needed",)))
-    assert verdict.component is Component.UNDETERMINED
+    assert (verdict.component, verdict.level) == (Component.UNDETERMINED, Level.WARN)
     assert "20°" in verdict.reason
 
 
