@@ -50,6 +50,8 @@ def pytest_configure(config: pytest.Config) -> None:
     os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
     os.environ["ROS_PYTHON_CHECK_FIELDS"] = "1"
     os.environ.setdefault("ROS_LOG_DIR", str(Path(tempfile.gettempdir()) / "hd_monitor-test-logs"))
+    # A shell lets its background jobs ignore Ctrl+C, and they hand that down: tests that send it would wait in vain.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def pytest_unconfigure(config: pytest.Config) -> None:
