@@ -23,6 +23,8 @@ PASS_BAND = 0.36
 """Part of the reduced sampling rate up to which the anti-aliasing filter passes everything (to 0.1 %)."""
 
 _TAPS = 32  # of the anti-aliasing filter, per factor of reduction
+_LOSS, _LOSS_DEAR = 0.03, 0.12  # part of the samples that reducing the rate may cost, by a little or much
+_WORTH_MUCH = 4  # factor of reduction
 _BRIDGED = 2  # samples missing in a row that interpolation replaces before the rate is reduced
 
 
@@ -72,7 +74,8 @@ def condition(raw: FloatArray, period: float, line: float, natural: float) -> Co
     count = int(spikes.sum())
     factor = math.floor(1.0 / (period * max(RATE_OVER_LINE * line, RATE_OVER_NATURAL * natural)))
     half = _TAPS // 2 * factor
-    if factor < 2 or raw.size <= 8 * half or np.count_nonzero(used) < 8:
+    lost = 2.0 * half / raw.size  # the filter has no output at the ends
+    if factor < 2 or lost > (_LOSS_DEAR if factor >= _WORTH_MUCH else _LOSS) or np.count_nonzero(used) < 8:
         values = np.where(used, raw, 0.0)
         return Conditioned(values=values, used=used, factor=1, first=0, highest_frequency=0.5 / period, outliers=count)
     taps = signal.firwin(2 * half + 1, 0.43 * 2.0 / factor, window=("kaiser", 6.0))

@@ -1,6 +1,7 @@
 """The state of an estimation: evidence gathered so far, the best values of the unknowns, and when to look again."""
 
 import cmath
+import copy
 import math
 from collections.abc import Sequence
 from dataclasses import replace
@@ -9,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..acquisition.record import Record
+from ..errors import HdMonitorError, ParameterError
 from ..settings import JointSettings
 from .conclusion import Conclusions
 from .coverage import Coverage
@@ -39,12 +41,12 @@ FREQUENCY_KNOWN = 0.005
 _SPEED_VARIES = 0.05  # relative standard deviation of the speed
 _START_LOADS = tuple(1.5 * cmath.exp(0.5j * math.pi * quarter) for quarter in range(4))
 _START_FREQUENCIES = (-0.12, -0.08, -0.04, 0.04, 0.08, 0.12)  # ln fn relative to the given one
-_SECOND_LOOK = 3.5  # s of motion at which the exploration made on the first second or so is repeated
+_SECOND_LOOK = 3.5  # s of motion at which the exploration made on the first second or so is repeated, if in doubt
 _POOR = 1.5  # inflation of the variances, by what the fit leaves at the lines, from which other solutions are sought
 _NOMINAL_INDEX = 0.05  # of the larger spline, where an unknown torque leaves the scale open
-_ROUNDS = 8
+_SLIP = 0.5  # of the top speed, by which velocities may differ from the change of the positions (root mean square)
+_ROUNDS, _FEW_ROUNDS = 8, 4
 _MOVED = 3.0  # standard deviations by which values may move before earlier stretches are linearised anew
-_MOST_SUBSTEPS = 16  # integration steps per sample; a sensor that slow shows nothing
 _START_DELAYS = (-0.012, -0.006, -0.003, 0.003, 0.006, 0.012)  # s
 _EXPLORED = 4.5  # s of the newest motion on which other solutions are tried
 
@@ -62,6 +64,8 @@ class Estimation:
         Newest result.
     seconds : float
         Motion used [s].
+    unusable : str
+        Why the newest stretch that could not be used could not; empty if all were.
     """
 
     def __init__(self, settings: JointSettings) -> None:
@@ -94,6 +98,7 @@ class Estimation:
         self._conclusions = Conclusions(settings, u)
         self.result: Identification | None = None
         self.seconds = 0.0
+        self.unusable = ""
 
     @property
     def well_known(self) -> bool:
@@ -101,9 +106,23 @@ class Estimation:
         return self.seconds >= WINDOW and self.result is not None and self._conclusions.well_known(self.result)
 
     def take(self, records: Sequence[Record]) -> None:
-        """Use a stretch, given as records that follow each other."""
+        """Use a stretch, given as records that follow each other; one that defies all arithmetic is left out."""
+        kept = copy.copy(self)
+        kept._recent = list(self._recent)
+        try:
+            with np.errstate(over="raise", divide="raise", invalid="raise"):
+                self._use(records)
+        except (FloatingPointError, OverflowError, np.linalg.LinAlgError, HdMonitorError) as error:
+            self.__dict__.update(kept.__dict__)
+            self.unusable = str(error)
+
+    def _use(self, records: Sequence[Record]) -> None:
         stretch = self._build(records)
-        if np.count_nonzero(stretch.used) < 4 * self._unknowns.size or stretch.substeps > _MOST_SUBSTEPS:
+        values = stretch.acceleration[stretch.used]
+        slip = np.diff(stretch.angle) / stretch.period - 0.5 * (stretch.speed[1:] + stretch.speed[:-1])
+        if float(np.mean(slip**2)) > (_SLIP * float(np.abs(stretch.speed).max())) ** 2:
+            raise ParameterError("positions and velocities of the joint contradict each other: check joint_states")
+        if values.size < 4 * self._unknowns.size or float(np.ptp(values)) == 0.0:
             return
         self.seconds += stretch.duration
         self._coverage = self._coverage.plus(stretch)
@@ -112,7 +131,7 @@ class Estimation:
             self._recent.pop(0)
         fit = self._fit()
         floor, rest = self._rest(fit)
-        if rest.inflation(self._coverage.span) > _POOR and self.seconds > 2.0 + 1.5 * self._explored:
+        if self._is_poor(rest):
             fit = self._look_elsewhere(fit)
             floor, rest = self._rest(fit)
         questioned = self._question(fit)
@@ -166,8 +185,8 @@ class Estimation:
     def _fit(self) -> Fit:
         """Fit the newest stretch on top of what is learnt; every now and then all anew, while all are at hand."""
         young = self.seconds <= WINDOW
-        if self._floor is None or (young and self._explored < _SECOND_LOOK <= self.seconds):
-            return self._explore(self._anew(), self._load_starts(known=self._floor is not None))
+        if self._floor is None:
+            return self._explore(self._anew(), [self._values], rounds=_FEW_ROUNDS)
         if young and self.seconds >= 2.0 * self._fitted_anew:
             return self._anew().solve(self._values, rounds=_ROUNDS)
         fit = self._problem(self._recent[-1:], self._prior + self._learnt).solve(self._values, rounds=3)
@@ -182,17 +201,17 @@ class Estimation:
         self._learnt = Knowledge.none(self._unknowns.size)
         return self._problem(self._recent, self._prior)
 
-    def _load_starts(self, *, known: bool) -> list[FloatArray]:
-        """Starts for the load, whose phase has local minima; and the best values so far, if any are known."""
+    def _load_starts(self) -> list[FloatArray]:
+        """Return the best values so far, and starts for the load, whose phase has local minima."""
         u = self._unknowns
-        starts = [self._values] if known else []
+        starts = [self._values]
         for load in (0.0, *_START_LOADS):
             start = self._values * ~u.mask(u.stiffness, u.load)
             start[u.load] = [0.0, load.real, 0.0, load.imag]
             starts.append(start)
         return starts
 
-    def _explore(self, problem: Problem, starts: Sequence[FloatArray]) -> Fit:
+    def _explore(self, problem: Problem, starts: Sequence[FloatArray], *, rounds: int) -> Fit:
         """Solve from several starts on the newest data, then on all."""
         self._explored = self.seconds
         newest = [problem.stretches[-1]]
@@ -201,12 +220,18 @@ class Estimation:
                 break
             newest.append(stretch)
         small = replace(problem, stretches=newest, floor=_signal_level(newest))
-        small, best = small.explore(starts, rounds=_ROUNDS)
-        fits = [
-            replace(problem, floor=small.floor).solve(values, rounds=_ROUNDS) for values in (best.values, starts[0])
-        ]
-        fit = min(fits, key=lambda f: f.cost)
-        return replace(problem, floor=fit.floor).solve(fit.values, rounds=_ROUNDS)
+        small, best = small.explore(starts, rounds=rounds)
+        candidates = [best.values, starts[0]] if len(starts) > 1 else [best.values]
+        whole = replace(problem, floor=small.floor)
+        fit = min((whole.solve(values, rounds=rounds) for values in candidates), key=lambda f: f.cost)
+        return replace(problem, floor=fit.floor).solve(fit.values, rounds=rounds)
+
+    def _is_poor(self, rest: LineResidual) -> bool:
+        """Whether so much is left at the lines that other solutions should be looked for, as often as effort allows."""
+        inflation = rest.inflation(self._coverage.span)
+        if self._explored < _SECOND_LOOK <= self.seconds:
+            return inflation > 1.0
+        return inflation > _POOR and self.seconds > 2.0 + 2.0 * self._explored
 
     def _look_elsewhere(self, fit: Fit) -> Fit:
         """Try other solutions on the recent stretches: the fit leaves more at the lines than noise could."""
@@ -217,7 +242,7 @@ class Estimation:
         if self._coverage.speed_varies:
             self._active = self._active | u.mask(u.delay)
         self._values = np.where(self._active, fit.values, 0.0)
-        starts = self._load_starts(known=True)
+        starts = self._load_starts()
         if self._refine:
             for shift in _START_FREQUENCIES:
                 start = u.zero()
@@ -228,7 +253,7 @@ class Estimation:
                 start = u.zero()
                 start[u.delay] = delay
                 starts.append(start)
-        return self._explore(self._anew(), starts)
+        return self._explore(self._anew(), starts, rounds=_ROUNDS)
 
     def _question(self, fit: Fit) -> Fit:
         """Ask whether what was given agrees with the data, and estimate along what does not."""

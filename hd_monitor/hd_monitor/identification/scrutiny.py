@@ -32,7 +32,8 @@ TRUSTED_FREQUENCY, TRUSTED_DAMPING = 0.05, 0.3
 _VAGUE = 0.5  # standard deviation of both indexes over the warn limit from which nothing can be said
 _NOTABLE = 0.1  # change of the logarithm of the indexes' ratio that matters
 _WIDENED = 2.25  # inflation of the variances that is worth mentioning
-_UNEXPLAINED = 0.12  # amplitude left at the lines, relative to what is explained, that forbids a name
+_UNEXPLAINED = 0.15  # amplitude left at the lines, relative to what is explained, that forbids a name
+_WIND_UP = 0.25  # rad; no reducer takes it
 _BAND = 0.9  # of half the sampling rate
 _CORRECTED_FREQUENCY, _CORRECTED_DAMPING, _CORRECTED_TORQUE = 0.02, 0.3, 0.25
 _CORRECTED_DELAY = 1e-3  # s
@@ -122,12 +123,18 @@ class Scrutiny:
         return Findings(doubts=tuple(doubts), blockers=tuple(blockers))
 
     def _unseen(self, suspect: Suspect) -> str:
-        """Say whether the sensor's rate hides what matters; empty if it does not."""
+        """Say whether the sensor's rate hides what matters, or the torque is absurd; empty if neither."""
         highest, frequency = suspect.highest_frequency, suspect.predictor.given.natural_frequency
         if frequency > _BAND * highest:
             return (
                 f"The natural frequency given, {frequency:g} Hz, lies beyond what {2.0 * highest:.0f} samples a second "
                 "show: sample faster, or correct dynamics.natural_frequency"
+            )
+        torque, stiffness = suspect.predictor.reference_torque, suspect.predictor.given.stiffness
+        if torque > _WIND_UP * stiffness and not suspect.relative:
+            return (
+                f"A torque of {torque:.3g} N·m would wind the reducer up by {math.degrees(torque / stiffness):.0f}°: "
+                "check the effort's unit, dynamics.inertia and dynamics.natural_frequency"
             )
         rpm = suspect.coverage.mean_speed * self._reducer.reduction * 60.0 / math.tau
         if self._reducer.line_frequencies(rpm).flexspline > _BAND * highest:

@@ -10,6 +10,7 @@ import numpy.typing as npt
 from scipy import fft
 
 from ..acquisition.record import Record
+from ..errors import ParameterError
 from ..model.oscillator import GAUSS_OFFSETS
 from ..reducer import Reducer
 from .conditioning import condition
@@ -21,6 +22,9 @@ BoolArray = npt.NDArray[np.bool_]
 
 FREQUENCY_MARGIN = 1.25
 """Factor by which the natural frequency may turn out higher than given."""
+
+MOST_SUBSTEPS = 16
+"""Integration steps per sample above which a stretch is refused."""
 
 LARGEST_PHASE_STEP = 1.0
 """Phase [rad] of the natural oscillation and of the fastest stiffness harmonic that an integration step may cover."""
@@ -190,6 +194,11 @@ class StretchBuilder:
         records : sequence of Record
         torque : float or None
             Torque [N·m] to be used instead of the records'; None for the records'.
+
+        Raises
+        ------
+        ParameterError
+            If the sampling rate is far too low for the lines and the natural frequency.
         """
         period = _common_period(records)
         angle, speed, measured, raw = (
@@ -203,6 +212,12 @@ class StretchBuilder:
         angle, speed, measured = angle[places], speed[places], measured[places]
         step = period * signal.factor
         steps = self._substeps(line, step)
+        if steps > MOST_SUBSTEPS:
+            raise ParameterError(
+                f"at {top_speed:.3g} rad/s and {1.0 / step:.4g} samples a second the lines and the natural frequency, "
+                f"{self.natural_frequency:g} Hz, ask for {steps} integration steps a sample, above {MOST_SUBSTEPS}: "
+                "such a signal shows nothing of them; sample faster"
+            )
         nodes = np.append(np.arange((angle.size - 1) * steps) / steps, angle.size - 1.0)
         gauss = np.stack([nodes[:-1] + c / steps for c in GAUSS_OFFSETS])
         own = own_acceleration(speed, step)
