@@ -9,7 +9,7 @@ from hd_monitor import contract
 from hd_monitor.diagnosis.status import status_of
 from hd_monitor.diagnosis.verdict import Component, FaultCode
 from hd_monitor.monitor import Monitor
-from hd_monitor.settings import JointSettings
+from hd_monitor.settings import JointSettings, set_aside_foreign, split_joints
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = ROOT / "msgs_doc"
@@ -75,3 +75,19 @@ def test_links_lead_somewhere(page: Path) -> None:
     for target in re.findall(r"\]\(([^)#\s]+)(?:#[^)]*)?\)", text):
         if "://" not in target:
             assert (page.parent / target).exists(), f"{page.name} links to {target}"
+
+
+def test_the_readmes_parameter_file_is_accepted() -> None:
+    yaml = pytest.importorskip("yaml")
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    blocks = [block for block in re.findall(r"```yaml\n(.*?)```", text, re.DOTALL) if block.startswith("/**:")]
+    assert len(blocks) == 1
+    given, foreign = set_aside_foreign(yaml.safe_load(blocks[0])["/**"]["ros__parameters"])
+    assert not foreign
+    assert list(split_joints(given)) == ["shoulder", "elbow"]
+
+
+def test_the_readme_shows_the_shipped_aggregator_file() -> None:
+    shipped = (ROOT / "config" / "aggregator.yaml").read_text(encoding="utf-8")
+    body = shipped[shipped.index("analyzers:") :]
+    assert body in (ROOT / "README.md").read_text(encoding="utf-8")

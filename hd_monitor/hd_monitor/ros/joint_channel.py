@@ -8,7 +8,7 @@ from rclpy.qos import QoSProfile
 from std_msgs.msg import Float64MultiArray
 
 from .. import contract
-from ..adapters import MOTION_SOURCE, VIBRATION_SOURCES, Source
+from ..adapters import VIBRATION_SOURCES, Source
 from ..settings import JointSettings
 from .joint_watch import VIBRATION, Explain, JointWatch
 from .messages import rms_message, zoom_message
@@ -67,10 +67,9 @@ class JointChannel:
         return None if source is None else Source(f"{self._prefix}{source.topic}", source.type)
 
     @property
-    def listens_to(self) -> str:
-        """Topics of the joint's inputs, for the log."""
-        source = self._source
-        return MOTION_SOURCE.topic if source is None else f"{source.topic}, {MOTION_SOURCE.topic}"
+    def topics(self) -> list[str]:
+        """Topic that the joint alone listens to; none while closed or without a sensor."""
+        return [] if self._vibration is None else [self._vibration.topic]
 
     def open(self, now: int) -> None:
         """Subscribe; silence counts from `now` [ns]."""

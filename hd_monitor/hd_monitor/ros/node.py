@@ -132,7 +132,8 @@ class HdMonitorNode(LifecycleNode):
             self.create_timer(DRAIN_PERIOD, self._drain, clock=self._steady),
             self.create_timer(STATUS_PERIOD, self._publish_all, clock=self._steady),
         ]
-        self.get_logger().info(f"watching {', '.join(f'{c.joint} ({c.listens_to})' for c in self._channels)}")
+        watched = ", ".join(f"{c.joint} ({' and '.join([*c.topics, self._motion.topic])})" for c in self._channels)
+        self.get_logger().info(f"watching {watched}")
         return super().on_activate(state)
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
