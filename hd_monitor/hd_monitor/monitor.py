@@ -76,14 +76,13 @@ class Monitor:
         self._seen: dict[str, int] = {}
         self._useful = 0
         self._latest: Assessment | None = None
-        self._begin_evidence()
-        self._identifier = identifier or self._identifier
+        self._begin_evidence(identifier)
 
-    def _begin_evidence(self) -> None:
+    def _begin_evidence(self, identifier: Identifier | SensorlessIdentifier | None = None) -> None:
         settings = self.settings
         self._rms = RmsAccumulator(settings["analysis.rms_bin_width"])
         self._steady = SteadyStretch(self._reducer, settings["analysis.minimum_speed"])
-        self._identifier: Identifier | SensorlessIdentifier = (
+        self._identifier = identifier or (
             SensorlessIdentifier(settings) if settings.sensorless else Identifier(settings)
         )
 
