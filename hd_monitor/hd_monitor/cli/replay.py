@@ -7,15 +7,12 @@ from pathlib import Path
 
 from ..diagnosis.verdict import Level
 from ..errors import ParameterError
-from ..offline.bag import Bag
 from ..offline.parameters import load_parameters, parse_override
-from ..offline.plan import Request, plan
-from ..offline.progress import ProgressLine
-from ..offline.replay import replay
-from ..offline.result import JointResult, as_dict
+from ..offline.plan import Request
+from ..offline.run import replay_bag
 from ..offline.summary import summarise
 
-DONE, FAILED, UNUSABLE = 0, 1, 2
+DONE, FAILED = 0, 1
 _FAIL_ON = {"warn": Level.WARN, "error": Level.ERROR}
 
 
@@ -69,42 +66,20 @@ def request_from(arguments: argparse.Namespace) -> Request:
 
 def run(arguments: argparse.Namespace) -> int:
     """Replay the bag; return the exit status."""
-    request = request_from(arguments)
-    with Bag(arguments.bag) as bag:
-        plans = plan(bag, request)
-        results = {item.joint: JointResult(item) for item in plans}
-        progress = ProgressLine(bag)
-        collectors = {}
-        if arguments.report:
-            from ..offline.report.collector import Collector
-
-            collectors = {item.joint: Collector(item.settings) for item in plans}
-        for said in replay(bag, plans, progress):
-            results[said.plan.joint].add(said)
-            if collectors and not said.last:
-                collectors[said.plan.joint].add(said.assessment)
-        progress.close()
-        notes = bag.notes
-    for note in notes:
+    outcome = replay_bag(arguments.bag, request_from(arguments), for_report=bool(arguments.report))
+    for note in outcome.notes:
         print(f"hd-monitor replay: {note}", file=sys.stderr)
-    joints = list(results.values())
-    complaints = [joint.unusable for joint in joints if joint.unusable]
-    for complaint in complaints:
-        print(f"hd-monitor replay: {complaint}", file=sys.stderr)
-    if len(complaints) == len(joints):
-        return UNUSABLE
     text = sys.stderr if arguments.json == "-" else sys.stdout
-    for joint in joints:
+    for joint in outcome.joints:
         print(summarise(joint), file=text)
-    content = as_dict(str(arguments.bag), notes, joints)
     if arguments.json:
-        write_json(content, arguments.json)
+        write_json(outcome.content, arguments.json)
     if arguments.report:
         from ..offline.report.page import write_report
 
-        page = write_report(arguments.report, content, joints, collectors)
+        page = write_report(arguments.report, outcome.content, outcome.joints, outcome.collectors)
         print(f"report: {page}", file=text)
-    worst = max(joint.last.verdict.level for joint in joints if joint.last is not None)
+    worst = max(joint.last.verdict.level for joint in outcome.joints if joint.last is not None)
     return FAILED if arguments.fail_on and worst >= _FAIL_ON[arguments.fail_on] else DONE
 
 
