@@ -47,7 +47,7 @@ def coverage_errors(number: int, seed: int) -> tuple[float, float]:
     return float(errors[0]), float(errors[1])
 
 
-def identify(records: Sequence[Record], settings: JointSettings):  # type: ignore[no-untyped-def]
+def identify(records: Sequence[Record], settings: JointSettings):
     """Run the identifier over records."""
     identifier = Identifier(settings)
     for record in records:
