@@ -103,9 +103,7 @@ def test_a_node_that_dies_is_named(start_module: Start, which: int) -> None:
 
 
 def test_a_node_that_refuses_to_start_is_quoted(start_module: Start) -> None:
-    demo = start_module(
-        COMMAND, "demo", "--domain", "232", "--monitor", "input.source:=imu", "--monitor", "input.sensor_radius:=0.0"
-    )
+    demo = start_module(COMMAND, "demo", "--monitor", "input.source:=imu", "--monitor", "input.sensor_radius:=0.0")
     assert demo.wait() == 1
     assert "ended with status 2" in demo.output
     assert "give the distance of the IMU from the joint's axis" in demo.output
