@@ -116,6 +116,7 @@ class Conclusions:
             instability_speed=self._instability_speed(predictor, values, indexes.index),
             doubts=findings.doubts,
             blockers=findings.blockers,
+            beta_covariance=np.stack([_of_phasors(covariance, part) for part in (u.circular_spline, u.flexspline)]),
         )
 
     def _instability_speed(self, predictor: Predictor, values: FloatArray, index: LinePair) -> float:
@@ -134,6 +135,15 @@ class Conclusions:
                 )
             )
         return self._margin
+
+
+def _of_phasors(covariance: FloatArray, part: slice) -> FloatArray:
+    """Covariance of real and imaginary part of each phasor of a part, shape (phasors, 2, 2)."""
+    own = covariance[part, part]
+    size = own.shape[0] // 2
+    k = np.arange(size)
+    places = np.stack([k, k + size], axis=1)
+    return np.asarray(own[places[:, :, None], places[:, None, :]])
 
 
 def _signal_to_noise(evidence: Sequence[Evidence]) -> float:

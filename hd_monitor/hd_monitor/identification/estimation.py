@@ -35,8 +35,8 @@ WINDOW = 16.0
 CONTRADICTION = 4.5
 """Standard deviations by which data must contradict what was given before it is estimated, too."""
 
-FREQUENCY_KNOWN = 0.005
-"""Standard deviation of ln fn below which data know it better than the parameters do."""
+FREQUENCY_KNOWN, DAMPING_KNOWN = 0.005, 0.05
+"""Standard deviations of ln fn and ln ζ below which data know them better than the parameters do."""
 
 _SPEED_VARIES = 0.05  # relative standard deviation of the speed
 _START_LOADS = tuple(1.5 * cmath.exp(0.5j * math.pi * quarter) for quarter in range(4))
@@ -264,8 +264,9 @@ class Estimation:
             waiting = [place for place in candidates if not self._active[place]]
             scores = {place: self._score(place, knowledge, fit.values) for place in waiting}
             wrong = [place for place in waiting if scores[place].significance > CONTRADICTION]
-            if u.frequency in waiting and self._coverage.speed_varies and scores[u.frequency].std < FREQUENCY_KNOWN:
-                wrong.append(u.frequency)
+            if self._coverage.speed_varies:
+                known = ((u.frequency, FREQUENCY_KNOWN), (u.damping, DAMPING_KNOWN))
+                wrong += [place for place, std in known if place in waiting and scores[place].std < std]
             if not wrong:
                 break
             worst = max(wrong, key=lambda place: scores[place].significance)

@@ -23,6 +23,8 @@ class Identifier:
     Parameters
     ----------
     settings : JointSettings
+    sparing : bool
+        Whether to look at a part of the motion only, once the indexes are known well enough for a verdict.
 
     Notes
     -----
@@ -40,10 +42,11 @@ class Identifier:
     True
     """
 
-    def __init__(self, settings: JointSettings) -> None:
+    def __init__(self, settings: JointSettings, *, sparing: bool = True) -> None:
         self._minimum_speed = settings["analysis.minimum_speed"] * math.tau / 60.0 / settings.reducer.reduction
         self._collector = Collector(self._minimum_speed)
         self._estimation = Estimation(settings)
+        self._sparing = sparing
         self._skip = 0.0
 
     def add(self, record: Record) -> None:
@@ -56,7 +59,7 @@ class Identifier:
             return
         for stretch in self._collector.add(record, self._stretch_length):
             self._estimation.take(stretch)
-            if self._estimation.well_known:
+            if self._sparing and self._estimation.well_known:
                 self._skip = CRUISE_PERIOD - CRUISE_STRETCH
 
     def estimate(self) -> Identification | None:
@@ -71,6 +74,6 @@ class Identifier:
 
     @property
     def _stretch_length(self) -> float:
-        if self._estimation.well_known:
+        if self._sparing and self._estimation.well_known:
             return CRUISE_STRETCH
         return min(LONGEST_STRETCH, max(1.0, 0.25 * self._estimation.seconds))

@@ -28,6 +28,9 @@ class Identification:
     ----------
     circular_spline, flexspline : ndarray of complex, shape (harmonics,)
         Phasors βk·exp(j phase), fractions of the mean stiffness; relative ones if `relative`.
+    beta_covariance : ndarray or None, shape (2, harmonics, 2, 2)
+        Covariance of the real and the imaginary part of every β, the circular spline's first; None where the indexes
+        are relative for want of a transfer function (sensorless).
     index : LinePair
         Root-sum-square of the β of each spline (bias from noise removed), fractions, never negative.
     index_std : LinePair
@@ -80,3 +83,4 @@ class Identification:
     instability_speed: float = float("inf")
     doubts: tuple[str, ...] = field(default=())
     blockers: tuple[str, ...] = field(default=())
+    beta_covariance: npt.NDArray[np.float64] | None = None

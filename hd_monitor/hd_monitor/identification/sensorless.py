@@ -116,6 +116,12 @@ class SensorlessIdentifier:
             return self._nothing(self._complaints())
         return self._latest
 
+    def finish(self) -> Identification | None:
+        """Use the stroke that is still open, and return what everything seen tells."""
+        for stroke in self._cutter.finish():
+            self._append(stroke)
+        return self.estimate()
+
     # Pooling -------------------------------------------------------------------------------------------------------
 
     def _append(self, stroke: Stroke) -> None:

@@ -161,7 +161,7 @@ class StrokeCutter:
 
     def finish(self) -> list[Stroke]:
         """Return the stroke that is still open, if it is worth one: no more messages will come."""
-        rows, self._pending = self._pending, np.empty((0, 4))
+        rows, self._pending, self._recent = self._pending, np.empty((0, 4)), np.empty((0, 4))
         return self._close(rows) if len(rows) and abs(rows[0, 2]) >= self._minimum else []
 
     def _close(self, rows: FloatArray) -> list[Stroke]:

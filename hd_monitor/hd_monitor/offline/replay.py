@@ -1,11 +1,13 @@
 """Replay: a recording's messages through the same monitors, by the same path, as in the node."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from ..adapters import Inputs
 from ..assessment import Assessment
 from ..contract import NANOSECONDS
+from ..identification.identifier import Identifier
+from ..identification.sensorless import SensorlessIdentifier
 from ..monitor import Monitor
 from .bag import Bag, Window
 from .plan import JointPlan
@@ -33,9 +35,9 @@ class Replayed:
 class _Channel:
     """One joint's monitor with its inputs."""
 
-    def __init__(self, plan: JointPlan) -> None:
+    def __init__(self, plan: JointPlan, identifier: Identifier | SensorlessIdentifier | None) -> None:
         self.plan = plan
-        self.monitor = Monitor(plan.joint, plan.settings)
+        self.monitor = Monitor(plan.joint, plan.settings, identifier)
         self._inputs = Inputs(plan.joint, plan.settings, self.monitor)
         self._timeout = round(plan.settings["input.timeout"] * NANOSECONDS)
         self._heard: int | None = None
@@ -63,7 +65,12 @@ class _Channel:
         return Replayed(plan=self.plan, assessment=assessment, last=True)
 
 
-def replay(bag: Bag, plans: Sequence[JointPlan], progress: Progress | None = None) -> Iterator[Replayed]:
+def replay(
+    bag: Bag,
+    plans: Sequence[JointPlan],
+    progress: Progress | None = None,
+    identifiers: Mapping[str, Identifier | SensorlessIdentifier] | None = None,
+) -> Iterator[Replayed]:
     """Put a recording through one monitor a joint, as fast as the machine allows.
 
     Parameters
@@ -72,6 +79,8 @@ def replay(bag: Bag, plans: Sequence[JointPlan], progress: Progress | None = Non
     plans : sequence of JointPlan
     progress : callable, optional
         Called with each window of messages after it has been fed.
+    identifiers : mapping of str to Identifier or SensorlessIdentifier, optional
+        By joint, those that go on with what they know from earlier recordings.
 
     Yields
     ------
@@ -79,7 +88,8 @@ def replay(bag: Bag, plans: Sequence[JointPlan], progress: Progress | None = Non
         Every assessment in the order of the stamps, joint by joint within a few seconds of recorded time; then each
         joint's last one.
     """
-    channels = [_Channel(plan) for plan in plans]
+    known = identifiers or {}
+    channels = [_Channel(plan, known.get(plan.joint)) for plan in plans]
     topics = {topic for plan in plans for topic in plan.topics if topic is not None}
     pause = min(round(plan.settings["input.timeout"] * NANOSECONDS) for plan in plans)
     for window in bag.windows(topics, pause=pause):

@@ -1,0 +1,196 @@
+"""Identification from recordings: all that is known of a joint, pooled over bags, by the monitor's own core."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+from ..acquisition.quality import Quality
+from ..assessment import Assessment
+from ..errors import ParameterError
+from ..identification.agreement import DirectionEvidence
+from ..identification.identifier import Identifier
+from ..identification.result import Identification
+from ..identification.sensorless import SensorlessIdentifier
+from ..identification.tooth_pairs import ToothPairRanking
+from ..settings import JointSettings
+from .bag import Bag
+from .errors import BagError
+from .identify_teeth import ToothCheck
+from .plan import JointPlan, Request, plan
+from .progress import ProgressLine
+from .replay import replay
+from .result import JointResult
+
+WHOLE_RECORDING: Mapping[str, Any] = {"analysis.memory": 86_400.0, "dynamics.refine": True}
+"""What a parameter file says for watching does not suit identification: nothing fades, and fn and ζ are sought."""
+
+
+@dataclass(slots=True, kw_only=True)
+class JointIdentification:
+    """What the recordings tell of one joint.
+
+    Attributes
+    ----------
+    plan : JointPlan
+        As in the first recording.
+    identifier : Identifier or SensorlessIdentifier
+        Carries the evidence from one recording to the next.
+    tooth_check : ToothCheck
+    bags : list of str
+        Recordings with usable data.
+    found : Identification or None
+        None if there was not enough motion.
+    directions : tuple of DirectionEvidence
+        Sensorless only.
+    teeth : ToothPairRanking or None
+        None if there was no motion at all.
+    last : Assessment or None
+        The last one of the last usable recording.
+    qualities : list of Quality
+        Of each usable recording.
+    complaints : list of str
+        Why recordings were not usable.
+    """
+
+    plan: JointPlan
+    identifier: Identifier | SensorlessIdentifier
+    tooth_check: ToothCheck
+    bags: list[str] = field(default_factory=list)
+    found: Identification | None = None
+    directions: tuple[DirectionEvidence, ...] = ()
+    teeth: ToothPairRanking | None = None
+    last: Assessment | None = None
+    qualities: list[Quality] = field(default_factory=list)
+    complaints: list[str] = field(default_factory=list)
+
+    @property
+    def settings(self) -> JointSettings:
+        """The joint's settings."""
+        return self.plan.settings
+
+    @property
+    def unusable(self) -> str:
+        """Why nothing can be said of the joint; empty if something can."""
+        if not self.bags:
+            return "; ".join(self.complaints)
+        if self.found is None or not self.found.samples:
+            blockers = self.found.blockers if self.found else ()
+            reason = blockers[0] if blockers else self.last.verdict.reason if self.last else ""
+            return f"joint {self.plan.joint!r}: nothing to identify in {', '.join(self.bags)}: {reason}"
+        return ""
+
+
+def identify(
+    paths: Sequence[Path],
+    request: Request,
+    *,
+    by_hand: Sequence[str] = (),
+    note: Callable[[str], None] = lambda _: None,
+) -> list[JointIdentification]:
+    """Identify the joints in some recordings, all recordings of a joint together; progress goes to standard error.
+
+    Parameters
+    ----------
+    paths : sequence of Path
+    request : Request
+    by_hand : sequence of str
+        Parameters in force as they are, even where they are of `WHOLE_RECORDING`.
+    note : callable
+        Told in a sentence of what is wrong with a recording.
+
+    Raises
+    ------
+    BagError
+        If nothing can be said of any joint.
+    ParameterError
+        If the parameters are wrong, or the recordings need different ones.
+    """
+    request = replace(request, parameters=_for_identification(request.parameters, by_hand))
+    joints: dict[str, JointIdentification] = {}
+    for path in paths:
+        with _named(path), Bag(path) as bag:
+            plans = plan(bag, request)
+            _pair_up(joints, plans, path)
+            _go_through(bag, plans, joints)
+            for sentence in bag.notes:
+                note(f"{path}: {sentence}" if len(paths) > 1 else sentence)
+    for joint in joints.values():
+        joint.found = joint.identifier.finish()
+        if isinstance(joint.identifier, SensorlessIdentifier):
+            joint.directions = joint.identifier.directions
+        joint.teeth = joint.tooth_check.ranking()
+    complaints = [joint.unusable for joint in joints.values() if joint.unusable]
+    if len(complaints) == len(joints):
+        raise BagError("; ".join(complaints))
+    for joint in joints.values():
+        for complaint in dict.fromkeys([*joint.complaints, *([joint.unusable] if joint.unusable else [])]):
+            note(complaint)
+    return [joint for joint in joints.values() if not joint.unusable]
+
+
+def _for_identification(parameters: Mapping[str, Any], by_hand: Sequence[str]) -> dict[str, Any]:
+    """Put `WHOLE_RECORDING` in force, also below the joints' names."""
+    ours = [name for name in WHOLE_RECORDING if name not in by_hand]
+    kept = {
+        name: value
+        for name, value in parameters.items()
+        if name in by_hand or not any(name == own or name.endswith(f".{own}") for own in ours)
+    }
+    return kept | {name: WHOLE_RECORDING[name] for name in ours}
+
+
+@contextmanager
+def _named(path: Path) -> Iterator[None]:
+    """Put the recording's name before what is wrong with it, if it is not in there."""
+    try:
+        yield
+    except BagError as error:
+        raise error if str(path) in str(error) else BagError(f"{path}: {error}") from None
+
+
+def _pair_up(joints: dict[str, JointIdentification], plans: Sequence[JointPlan], path: Path) -> None:
+    """Find every joint's evidence from earlier recordings, or make room for it."""
+    for item in plans:
+        known = joints.get(item.joint)
+        if known is None:
+            sensorless = item.settings.sensorless
+            joints[item.joint] = JointIdentification(
+                plan=item,
+                identifier=SensorlessIdentifier(item.settings)
+                if sensorless
+                else Identifier(item.settings, sparing=False),
+                tooth_check=ToothCheck(item.settings),
+            )
+        elif known.settings.values != item.settings.values:
+            ours, theirs = (dict(settings.values) for settings in (known.settings, item.settings))
+            differ = ", ".join(
+                f"{name} = {ours[name]} and {theirs[name]}" for name in ours if ours[name] != theirs[name]
+            )
+            raise ParameterError(
+                f"joint {item.joint!r}: {path} would need other parameters than the recordings before it ({differ}); "
+                "set them with -p, or identify the recordings one by one"
+            )
+
+
+def _go_through(bag: Bag, plans: Sequence[JointPlan], joints: Mapping[str, JointIdentification]) -> None:
+    """Feed one recording to the identifiers."""
+    results = {item.joint: JointResult(item) for item in plans}
+    progress = ProgressLine(bag)
+    identifiers = {item.joint: joints[item.joint].identifier for item in plans}
+    for said in replay(bag, plans, progress, identifiers):
+        results[said.plan.joint].add(said)
+        if not said.last:
+            joints[said.plan.joint].tooth_check.add(said.assessment)
+    progress.close()
+    for name, result in results.items():
+        joint = joints[name]
+        joint.identifier.finish()  # nothing joins one recording's end to the next one's beginning
+        joint.tooth_check.cut()
+        if result.unusable:
+            joint.complaints.append(f"{bag.path}: {result.unusable}")
+        else:
+            joint.bags.append(str(bag.path))
+            joint.last = result.last
+            joint.qualities += [result.last.quality] if result.last else []

@@ -1,0 +1,104 @@
+"""The identified quantities as numbers with standard deviations and confidence intervals."""
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from scipy.stats import norm
+
+from ..identification.indexes import stiffness_indexes
+from ..identification.result import Identification
+from ..identification.unknowns import Unknowns
+
+CONFIDENCE = 0.95
+"""Probability with which an interval holds the true value."""
+
+_WIDTH = float(norm.ppf(0.5 + 0.5 * CONFIDENCE))
+_ONE = Unknowns(harmonics=1, load_orders=())
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Estimate:
+    """A value, its standard deviation and its 95 % confidence interval, in the value's unit; NaN where unknown."""
+
+    value: float
+    std: float
+    low: float
+    high: float
+
+    @classmethod
+    def gaussian(cls, value: float, std: float) -> "Estimate":
+        """Estimate of a quantity that is never negative, with a Gaussian error."""
+        low = value - _WIDTH * std
+        return cls(value=value, std=std, low=0.0 if low < 0.0 else low, high=value + _WIDTH * std)
+
+    @classmethod
+    def lognormal(cls, value: float, std: float) -> "Estimate":
+        """Estimate whose logarithm has a Gaussian error, as fn and ζ."""
+        factor = math.exp(_WIDTH * std / value) if value > 0.0 else math.nan
+        return cls(value=value, std=std, low=value / factor, high=value * factor)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Harmonic:
+    """One β of one spline.
+
+    Attributes
+    ----------
+    k : int
+    beta : Estimate
+        Magnitude, a fraction of the mean stiffness, bias from noise removed.
+    phase, phase_std : float
+        Phase where the output angle is 0, and its standard deviation [rad]; NaN where noise hides it.
+    """
+
+    k: int
+    beta: Estimate
+    phase: float
+    phase_std: float
+
+
+class BothSplines(NamedTuple):
+    """Every β of the circular spline and of the flexspline."""
+
+    circular_spline: tuple[Harmonic, ...]
+    flexspline: tuple[Harmonic, ...]
+
+
+def harmonics(found: Identification) -> BothSplines:
+    """Magnitude and phase of every identified β."""
+    covariance = found.beta_covariance
+    parts = []
+    for spline, phasors in enumerate((found.circular_spline, found.flexspline)):
+        own = [None] * len(phasors) if covariance is None else list(covariance[spline])
+        parts.append(tuple(_harmonic(k + 1, complex(z), c) for k, (z, c) in enumerate(zip(phasors, own, strict=True))))
+    return BothSplines(*parts)
+
+
+def _harmonic(k: int, phasor: complex, covariance: npt.NDArray[np.float64] | None) -> Harmonic:
+    if covariance is None:
+        unknown = Estimate.gaussian(abs(phasor), math.nan)
+        return Harmonic(k=k, beta=unknown, phase=math.atan2(phasor.imag, phasor.real), phase_std=math.nan)
+    values, whole = _ONE.zero(), np.zeros((_ONE.size, _ONE.size))
+    values[_ONE.circular_spline] = phasor.real, phasor.imag
+    whole[_ONE.circular_spline, _ONE.circular_spline] = covariance
+    magnitude = stiffness_indexes(_ONE, values, whole)
+    beta = Estimate.gaussian(magnitude.index.circular_spline, magnitude.std.circular_spline)
+    across = np.array([-phasor.imag, phasor.real])
+    size = abs(phasor)
+    std = math.sqrt(float(across @ covariance @ across)) / size**2 if size > 0.0 else math.inf
+    if not std < 0.5:  # beyond, the error of a phase is no longer Gaussian, and soon it says nothing
+        return Harmonic(k=k, beta=beta, phase=math.nan, phase_std=math.nan)
+    return Harmonic(k=k, beta=beta, phase=math.atan2(phasor.imag, phasor.real), phase_std=std)
+
+
+def natural_frequency(found: Identification) -> Estimate:
+    """Natural frequency [Hz]; its deviation is 0 if it was taken as given."""
+    return Estimate.lognormal(found.natural_frequency, found.natural_frequency_std)
+
+
+def damping_ratio(found: Identification) -> Estimate:
+    """Damping ratio; its deviation is 0 if it was taken as given."""
+    return Estimate.lognormal(found.damping_ratio, found.damping_ratio_std)

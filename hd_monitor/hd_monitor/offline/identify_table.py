@@ -1,0 +1,140 @@
+"""An identification as a table for the terminal."""
+
+import math
+from collections.abc import Iterator
+
+from ..identification.result import Identification
+from . import identify_numbers as numbers
+from .identify import JointIdentification
+from .identify_numbers import Estimate
+from .identify_result import quality_sums, teeth_contradict
+
+_SHOWN = 5
+"""Candidate tooth pairs shown."""
+
+
+def table(joint: JointIdentification) -> str:
+    """Write all that was identified of a joint."""
+    found = joint.found
+    assert found is not None
+    parts = [_head(joint, found), _splines(joint, found)]
+    parts.append(_directions(joint) if joint.settings.sensorless else _dynamics(joint, found))
+    parts += [_lines(joint, found), _evidence(joint, found), _teeth(joint)]
+    return "\n".join(line for part in parts for line in part)
+
+
+def _head(joint: JointIdentification, found: Identification) -> Iterator[str]:
+    yield f"{joint.plan.joint}: identified from {', '.join(joint.bags)}"
+    if teeth_contradict(joint):
+        given = joint.settings.reducer
+        yield (
+            f"  WRONG TEETH? {joint.teeth.statement if joint.teeth else ''}; given are {given.flexspline_teeth}/"
+            f"{given.circular_spline_teeth}, so nothing below holds: correct reducer.* and identify again"
+        )
+    for blocker in found.blockers:
+        yield f"  no part can be named: {blocker}"
+    for doubt in found.doubts:
+        yield f"  note: {doubt}"
+    for note in joint.plan.notes:
+        yield f"  note: {note}"
+
+
+def _splines(joint: JointIdentification, found: Identification) -> Iterator[str]:
+    both = numbers.harmonics(found)
+    splines = (("circular spline", both.circular_spline, 0), ("flexspline", both.flexspline, 1))
+    if joint.settings.sensorless:
+        yield "  relative index (share of the lines' size)      95 % interval"
+        for name, _, place in splines:
+            estimate = Estimate.gaussian(found.index[place], found.index_std[place])
+            yield f"    {name:<16} {_value(estimate, 1.0)}"
+        return
+    kind = "relative β, no torque is known" if found.relative else "β of the mean stiffness"
+    yield f"  {kind:<32} %  95 % interval               phase, rad"
+    for name, harmonics, place in splines:
+        for h in harmonics:
+            phase = f"{h.phase:+.3f} ± {h.phase_std:.2g}" if math.isfinite(h.phase) else "in the noise"
+            yield f"    {name:<16} k = {h.k}   {_value(h.beta, 100.0):<45} {phase}"
+        estimate = Estimate.gaussian(found.index[place], found.index_std[place])
+        yield f"    {name:<16} index   {_value(estimate, 100.0)}"
+    yield f"    correlation of the two indexes' errors {found.index_correlation:+.2f}"
+
+
+def _dynamics(joint: JointIdentification, found: Identification) -> Iterator[str]:
+    given = joint.settings.dynamics
+    for name, unit, estimate, start in (
+        ("natural frequency fn", " Hz", numbers.natural_frequency(found), given.natural_frequency),
+        ("damping ratio ζ", "", numbers.damping_ratio(found), given.damping_ratio),
+    ):
+        if estimate.std > 0.0:
+            yield f"  {name:<22} {_value(estimate, 1.0)}{unit}; given was {start:g}{unit}"
+        else:
+            yield f"  {name:<22} {start:g}{unit} as given: the motion does not tell it better"
+    load = Estimate.gaussian(found.load_fluctuation, found.load_fluctuation_std)
+    yield f"  {'load fluctuation':<22} {_value(load, 1.0)} N·m"
+    speed = found.instability_speed
+    yield f"  {'unstable from':<22} " + (
+        f"{speed:.0f} rpm of the wave generator" if math.isfinite(speed) else "no speed"
+    )
+
+
+def _directions(joint: JointIdentification) -> Iterator[str]:
+    cs, fs = joint.settings.reducer.output_orders
+    for d in joint.directions:
+        yield f"  {d.name}: {d.strokes} strokes, {d.samples} samples" + (
+            f"; a larger line at {d.rival:.0f}" if d.rival is not None else ""
+        )
+        for name, order, place in (("circular spline", cs, 0), ("flexspline", fs, 1)):
+            yield (
+                f"    {name:<16} {order:>5g}/rev  {d.amplitude[place]:.4g} ± {d.std[place]:.2g}, by chance "
+                f"{d.chance[place]:.1g}, the larger one with probability {d.dominance[place]:.3f}"
+            )
+
+
+def _lines(joint: JointIdentification, found: Identification) -> Iterator[str]:
+    unit = {"joint_effort": "effort's unit", "joint_velocity": "rad/s"}.get(joint.settings["input.source"], "rad/s²")
+    if found.lines:
+        yield f"  line amplitudes, {unit}   circular spline        flexspline"
+    for line in found.lines:
+        cells = [f"{size:.4g} ± {std:.2g}" for size, std in zip(line.amplitude, line.std, strict=True)]
+        yield f"    k = {line.k}                    {cells[0]:<22} {cells[1]}"
+
+
+def _evidence(joint: JointIdentification, found: Identification) -> Iterator[str]:
+    yield (
+        f"  from {math.degrees(found.travel):.0f}° of travel, {found.samples} samples; signal to noise "
+        f"{found.signal_to_noise:.0f} dB, misfit {found.misfit:.2f}"
+    )
+    named = {
+        "gaps": "gaps", "duplicates": "duplicates", "out_of_order": "out of order", "not_finite": "not finite",
+        "clipped": "clipped", "stuck": "stuck", "spikes": "spikes", "clock_jumps": "clock jumps",
+        "motion_faults": "bad joint states", "rejected": "rejected",
+    }  # fmt: skip
+    sums = quality_sums(joint.qualities)
+    wrong = ", ".join(f"{name} {sums[key]}" for key, name in named.items() if sums.get(key))
+    yield f"  {wrong or 'no faults in the data'}"
+
+
+def _teeth(joint: JointIdentification) -> Iterator[str]:
+    ranking = joint.teeth
+    if ranking is None:
+        return
+    reducer = joint.settings.reducer
+    yield f"  tooth check ({reducer.flexspline_teeth}/{reducer.circular_spline_teeth} given): {ranking.statement}"
+    best = ranking.ranked[0].log_evidence
+    for pair in ranking.ranked[:_SHOWN]:
+        if math.isfinite(pair.log_evidence):
+            behind = (best - pair.log_evidence) / math.log(10.0)
+            yield (
+                f"    {pair.teeth.flexspline}/{pair.teeth.circular_spline}  {pair.lines_found} of its first 2 lines "
+                f"found, odds 10^{behind:.1f} to 1 behind the first"
+            )
+
+
+def _value(estimate: Estimate, scale: float) -> str:
+    """Value ± std [interval], to the digits that the deviation leaves a meaning."""
+    value, std = scale * estimate.value, scale * estimate.std
+    if not (math.isfinite(std) and std > 0.0):
+        return f"{value:.4g}"
+    digits = min(max(1 - math.floor(math.log10(std)), 0), 8)
+    low, high = scale * estimate.low, scale * estimate.high
+    return f"{value:.{digits}f} ± {std:.{digits}f}  [{low:.{digits}f}, {high:.{digits}f}]"
