@@ -23,7 +23,7 @@ def own_acceleration(speed: FloatArray, period: float) -> FloatArray:
     """Acceleration [rad/s²] of the output, from its speed [rad/s] at samples `period` [s] apart."""
     if float(np.ptp(speed)) == 0.0:
         return np.zeros(speed.shape)
-    return np.asarray(gaussian_filter1d(speed, _QUICK / period, order=1, mode="nearest") / period)
+    return np.asarray(gaussian_filter1d(np.gradient(speed, period), _QUICK / period, mode="nearest"))
 
 
 def smooth_torque(

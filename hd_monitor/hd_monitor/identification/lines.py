@@ -13,7 +13,7 @@ from .stretch import Stretch
 NEWEST = 4.5
 """Motion [s] that the amplitudes stand for."""
 
-_SIDE_TRAVEL = math.tau  # rad of travel from which the lines between and beside a pair are fitted too
+_SIDE_TRAVEL = 0.55 * math.tau  # rad of travel from which the lines between and beside a pair are fitted too
 _DEPENDENT = 1e-8  # reciprocal condition below which the travel does not tell the lines
 
 

@@ -1,0 +1,190 @@
+"""The identifier on simulated cases: what it must find, what it must notice, and what it must survive."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from tests.benchmarks.estimator_cases import Case, simulate
+
+from hd_monitor.identification.identifier import Identifier
+from hd_monitor.model import Dynamics, ParametricModel, StiffnessSeries, Torque, line_pairs
+
+MODEL = ParametricModel(
+    dynamics=Dynamics(),
+    flexspline=StiffnessSeries((0.03, 0.015, 0.01), (0.4, 1.1, 2.0)),
+    circular_spline=StiffnessSeries((0.07, 0.03, 0.02), (2.5, 0.3, 1.0)),
+    torque=Torque(mean=10.0, load_fluctuation=8.0, load_phase=1.0),
+)
+
+
+def case(**changes):
+    values = {
+        "model": MODEL,
+        "motion": "dwell",
+        "speed": 1000.0,
+        "span": np.radians(120.0),
+        "duration": 12.0,
+        "snr": 20.0,
+        "colour": "white",
+        "spikes": 0.0,
+        "lost": 0.0,
+        "measured": False,
+        "rate": 1000.0,
+        "seed": 1,
+    }
+    return Case(**(values | changes))
+
+
+def identify(records, settings):
+    identifier = Identifier(settings)
+    for record in records:
+        identifier.add(record)
+    return identifier.finish()
+
+
+def assert_right(result, truth, *, stds=4.5):
+    error = np.abs(np.subtract(result.index, truth.index)) / np.asarray(result.index_std)
+    assert error.max() < stds, (result.index, truth.index, result.index_std)
+    assert max(result.index_std) < 0.01
+    assert result.blockers == ()
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {},
+        {"motion": "strokes", "speed": 1500.0},
+        {"motion": "run_up", "speed": 1600.0},
+        {"speed": 1650.0},
+        {"speed": 825.0, "colour": "red"},
+        {"motion": "strokes", "spikes": 0.002, "lost": 0.05, "measured": True},
+        {"motion": "ripple", "model": replace(MODEL, torque=replace(MODEL.torque, load_fluctuation=28.0))},
+        {"rate": 4000.0, "duration": 6.0},
+    ],
+    ids=["dwell", "strokes", "run-up", "resonance", "half", "faults", "load", "fast"],
+)
+def test_indexes_are_right_within_their_uncertainty(changes):
+    truth = case(**changes)
+    result = identify(simulate(truth), truth.settings())
+    assert_right(result, truth)
+    assert result.relative is False
+
+
+def test_a_quarter_turn_at_20_db_is_enough():
+    truth = case(duration=4.0, speed=320.0)
+    result = identify(simulate(truth), truth.settings())
+    assert np.degrees(result.travel) < 97.0
+    assert result.blockers == ()
+    assert result.index.circular_spline - result.index.flexspline > 3.0 * max(result.index_std)
+
+
+@pytest.mark.parametrize("factor", [0.9, 1.1])
+@pytest.mark.parametrize("motion", ["dwell", "run_up"])
+def test_a_wrong_natural_frequency_is_noticed(factor, motion):
+    truth = case(motion=motion, speed=1500.0)
+    wrong = {"dynamics.natural_frequency": 55.0 * factor}
+    result = identify(simulate(truth), truth.settings(**wrong))
+    assert result.natural_frequency == pytest.approx(55.0, rel=0.01)
+    assert any("natural frequency" in doubt for doubt in result.doubts)
+    assert_right(result, truth)
+    kept = identify(simulate(truth), truth.settings(**wrong, **{"dynamics.refine": False}))
+    assert any("natural frequency" in text or "not explained" in text for text in kept.blockers)
+
+
+def test_a_lag_between_the_clocks_is_noticed():
+    truth = case(motion="strokes", speed=900.0)
+    records = [replace(r, start=r.start) for r in simulate(truth)]
+    shift = 4  # samples of 1 ms by which the vibration comes late
+    acceleration = np.concatenate([r.acceleration for r in records])
+    late = np.concatenate([np.full(shift, np.nan), acceleration[:-shift]]).reshape(len(records), -1)
+    records = [replace(r, acceleration=row) for r, row in zip(records, late, strict=True)]
+    result = identify(records, truth.settings())
+    assert_right(result, truth)
+    assert any("lag" in doubt for doubt in result.doubts)
+
+
+def test_noise_on_a_measured_torque_does_not_pass_for_vibration():
+    truth = case(measured=True)
+    rng = np.random.default_rng(3)
+    records = [replace(r, torque=r.torque + 0.2 * rng.standard_normal(len(r))) for r in simulate(truth)]
+    assert_right(identify(records, truth.settings()), truth, stds=6.0)
+
+
+def test_without_torque_the_ratio_is_right_and_said_to_be_relative():
+    truth = case()
+    records = [replace(r, torque=np.full(len(r), np.nan)) for r in simulate(truth)]
+    result = identify(records, truth.settings(**{"load.source": "unknown"}))
+    assert result.relative
+    ratio = result.index.circular_spline / result.index.flexspline
+    assert ratio == pytest.approx(truth.index.circular_spline / truth.index.flexspline, rel=0.05)
+
+
+def test_line_amplitudes_are_those_of_the_steady_state():
+    truth = case(model=replace(MODEL, torque=Torque(mean=10.0)), snr=40.0)
+    records = simulate(truth)
+    result = identify(records, truth.settings())
+    model = truth.model
+    if (
+        records[0].speed[0] < 0.0
+    ):  # backwards the harmonics' phases run the other way, which the coupling of lines feels
+        parts = {name: getattr(model, name).phasors.conj() for name in ("circular_spline", "flexspline")}
+        model = replace(model, **{name: StiffnessSeries.from_phasors(z) for name, z in parts.items()})
+    expected = line_pairs(model, 1000.0, 3)
+    for line, pair in zip(result.lines, expected, strict=True):
+        # over a few seconds the groups of lines leak into each other by some 1e-3 of the strongest line
+        np.testing.assert_allclose(line.amplitude, pair, rtol=0.01, atol=5e-3 * max(map(max, expected)))
+
+
+def test_too_little_travel_is_said_with_what_is_missing():
+    truth = case(duration=4.0, speed=150.0)
+    result = identify(simulate(truth), truth.settings())
+    (reason,) = result.blockers
+    travel = np.degrees(result.travel)
+    assert f"{travel:.0f}° of output travel" in reason
+    assert f"{np.ceil(85.0 - travel):.0f}° more" in reason
+
+
+def test_a_standing_joint_gives_nothing():
+    truth = case()
+    still = [replace(r, speed=np.zeros(len(r)), angle=np.zeros(len(r))) for r in simulate(truth)]
+    assert identify(still, truth.settings()) is None
+
+
+@pytest.mark.parametrize(
+    "spoil",
+    [
+        lambda r: replace(r, acceleration=1e200 * r.acceleration),
+        lambda r: replace(r, acceleration=np.zeros(len(r))),
+        lambda r: replace(r, acceleration=np.full(len(r), np.nan)),
+        lambda r: replace(r, speed=1e5 * r.speed, angle=1e5 * r.angle),
+        lambda r: replace(r, angle=np.random.default_rng(0).standard_normal(len(r))),
+        lambda r: replace(r, torque=np.full(len(r), 1e12)),
+        lambda r: replace(r, torque=np.zeros(len(r))),
+    ],
+    ids=["huge", "zero", "missing", "speed", "angle", "torque", "no torque"],
+)
+def test_absurd_input_never_raises_and_never_names(spoil):
+    truth = case(duration=6.0)
+    result = identify([spoil(r) for r in simulate(truth)], truth.settings())
+    assert result is None or result.blockers
+
+
+def test_the_same_records_give_the_same_result():
+    truth = case(motion="strokes")
+    first, second = (identify(simulate(truth), truth.settings()) for _ in range(2))
+    np.testing.assert_array_equal(first.circular_spline, second.circular_spline)
+    assert first.index_std == second.index_std
+
+
+@pytest.mark.slow
+def test_a_defect_that_comes_later_is_seen():
+    before, after = (
+        case(model=replace(MODEL, circular_spline=StiffnessSeries((0.01,))), duration=40.0),
+        case(duration=60.0),
+    )
+    identifier = Identifier(before.settings())
+    for record in [*simulate(before), *(replace(r, continues=False) for r in simulate(after))]:
+        identifier.add(record)
+    result = identifier.finish()
+    assert result is not None
+    assert result.index.circular_spline > 0.05
