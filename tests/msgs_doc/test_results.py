@@ -69,6 +69,34 @@ def test_every_key_of_a_comparison_is_documented(compared: dict[str, Any]) -> No
     assert sorted(joint["before"]) == sorted(keys_below("Verdict"))
 
 
+@pytest.fixture(scope="module")
+def identified(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+    """Identify from joint states alone, since only that mode has directions; strokes give it two."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(tmp_path_factory.mktemp("identified"))
+        effort = ["--set", "joint_states.effort:=reaction", "--set", "joint_states.effort_noise:=0.3"]
+        rig = ["--programme", "strokes", "--duration", "40", "--seed", "1", "--publish", "none", *effort]
+        rig += ["--out", "strokes"]
+        assert bag_command.main(rig) == 0
+        assert main(["identify", "strokes", "-p", "input.source:=joint_effort", "--json", "strokes.json"]) == 0
+        content: dict[str, Any] = json.loads(Path("strokes.json").read_text(encoding="utf-8"))
+    return content
+
+
+def test_every_key_of_an_identification_is_documented(identified: dict[str, Any]) -> None:
+    joint = identified["joints"][0]
+    assert sorted(identified) == sorted(keys_below("identify"))
+    assert sorted(joint) == sorted(keys_below("Each identified joint"))
+    assert sorted(joint["directions"][0]) == sorted(keys_below("Each entry of directions"))
+    assert sorted(joint["teeth"]) == sorted(keys_below("Teeth"))
+    spline = joint["flexspline"]
+    assert sorted(spline) == sorted(keys_below("Each identified spline"))
+    assert sorted(spline["index"]) == ["high", "low", "std", "value"]
+    assert set(joint["quality"]) == set(keys_below("Quality")) - {"rate", "last_fault"}
+    for nested in (*spline["harmonics"][:1], joint["teeth"]["ranked"][0]):
+        assert all(f"`{key}`" in PAGE for key in nested)
+
+
 def leaves(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
     """All plain values in nested lists and mappings; a list's entries by one path, since the example has fewer."""
     if isinstance(value, dict):
