@@ -45,6 +45,7 @@ _SECOND_LOOK = 3.5  # s of motion at which the exploration made on the first sec
 _POOR = 1.5  # inflation of the variances, by what the fit leaves at the lines, from which other solutions are sought
 _NOMINAL_INDEX = 0.05  # of the larger spline, where an unknown torque leaves the scale open
 _SLIP = 0.5  # of the top speed, by which velocities may differ from the change of the positions (root mean square)
+_CLEARLY_BETTER = 30.0  # of the cost
 _ROUNDS, _FEW_ROUNDS = 8, 4
 _MOVED = 3.0  # standard deviations by which values may move before earlier stretches are linearised anew
 _START_DELAYS = (-0.012, -0.006, -0.003, 0.003, 0.006, 0.012)  # s
@@ -90,10 +91,12 @@ class Estimation:
         self._values = u.zero()
         self._active = u.mask(u.stiffness, u.load, u.inertia)
         self._recent: list[Stretch] = []
+        self._mounting = 1.0
         self._fitted_anew = 0.0
         self._floor: NoiseFloor | None = None
         self._line_residual = LineResidual.empty(u.harmonics)
         self._explored = 0.0
+        self._sign = 1.0
         self._coverage = Coverage()
         self._conclusions = Conclusions(settings, u)
         self.result: Identification | None = None
@@ -124,6 +127,8 @@ class Estimation:
             raise ParameterError("positions and velocities of the joint contradict each other: check joint_states")
         if values.size < 4 * self._unknowns.size or float(np.ptp(values)) == 0.0:
             return
+        if self._sign < 0.0:
+            stretch = replace(stretch, acceleration=-stretch.acceleration)
         self.seconds += stretch.duration
         self._coverage = self._coverage.plus(stretch)
         self._recent.append(stretch)
@@ -131,6 +136,9 @@ class Estimation:
             self._recent.pop(0)
         fit = self._fit()
         floor, rest = self._rest(fit)
+        if self._is_poor(rest):
+            fit = self._turn_sensor(fit)
+            floor, rest = self._rest(fit)
         if self._is_poor(rest):
             fit = self._look_elsewhere(fit)
             floor, rest = self._rest(fit)
@@ -146,6 +154,11 @@ class Estimation:
     # Preparation ---------------------------------------------------------------------------------------------------
 
     def _build(self, records: Sequence[Record]) -> Stretch:
+        """Make a stretch, with the sensor's sign as found so far."""
+        stretch = self._build_as_mounted(records)
+        return stretch if self._mounting > 0.0 else stretch.mirrored()
+
+    def _build_as_mounted(self, records: Sequence[Record]) -> Stretch:
         """Make a stretch; where nobody knows the torque, a nominal one stands for it."""
         if np.isfinite(records[0].torque).all():
             return self._builder.build(records, None)
@@ -233,6 +246,24 @@ class Estimation:
             return inflation > 1.0
         return inflation > _POOR and self.seconds > 2.0 + 2.0 * self._explored
 
+    def _turn_sensor(self, fit: Fit) -> Fit:
+        """Try the sensor's sign the other way round: against that of the torque it is a matter of mounting.
+
+        To first order the opposite sign only turns the phases of all β; the coupling of the lines tells it.
+        """
+        u = self._unknowns
+        as_it_is = self._problem(self._recent, self._prior).solve(fit.values, rounds=_FEW_ROUNDS)
+        kept = self._recent, self._active, self._learnt, self._fitted_anew
+        self._recent = [stretch.mirrored() for stretch in self._recent]
+        self._active = self._active & ~u.mask(u.frequency, u.damping, u.delay)
+        start = np.where(self._active, fit.values, 0.0) * np.where(u.mask(u.stiffness), -1.0, 1.0)
+        turned = self._anew().solve(start, rounds=_ROUNDS)
+        if turned.cost < as_it_is.cost:
+            self._mounting = -self._mounting
+            return turned
+        self._recent, self._active, self._learnt, self._fitted_anew = kept
+        return fit
+
     def _look_elsewhere(self, fit: Fit) -> Fit:
         """Try other solutions on the recent stretches: the fit leaves more at the lines than noise could."""
         u = self._unknowns
@@ -253,7 +284,27 @@ class Estimation:
                 start = u.zero()
                 start[u.delay] = delay
                 starts.append(start)
-        return self._explore(self._anew(), starts, rounds=_ROUNDS)
+        fit = self._explore(self._anew(), starts, rounds=_ROUNDS)
+        return self._try_other_sign(fit)
+
+    def _try_other_sign(self, fit: Fit) -> Fit:
+        """Keep the fit, or one that takes the sensor's axis to point against the torque if it is clearly better.
+
+        How a sensor is mounted is arbitrary; only the coupling of the lines shows it, since without coupling another
+        sign is another phase of the defects.
+        """
+        upright = self._recent
+        self._recent = [replace(s, acceleration=-s.acceleration) for s in upright]
+        problem = self._anew()
+        start = np.where(self._unknowns.mask(self._unknowns.stiffness), -fit.values, fit.values)
+        turned = self._explore(problem, [start, start * ~self._unknowns.mask(self._unknowns.stiffness)], rounds=_ROUNDS)
+        cost = replace(problem, floor=fit.floor).at(turned.values).cost
+        if cost < replace(problem, stretches=upright, floor=fit.floor).at(fit.values).cost - _CLEARLY_BETTER:
+            self._sign = -self._sign
+            return turned
+        self._recent = upright
+        self._anew()
+        return fit
 
     def _question(self, fit: Fit) -> Fit:
         """Ask whether what was given agrees with the data, and estimate along what does not."""

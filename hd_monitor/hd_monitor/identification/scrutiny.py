@@ -198,7 +198,10 @@ class Scrutiny:
         torque = suspect.scores[u.torque]
         if not suspect.relative and torque.significance > CONTRADICTION and abs(torque.value) > _CORRECTED_TORQUE:
             direction = "larger" if torque.value > 0.0 else "smaller"
-            doubts.append(f"the torque seems {direction} than given: check load.torque or the effort's unit")
+            blockers.append(
+                f"The vibration contradicts the torque given, which seems to be {direction}: check load.torque or the "
+                "effort's unit; the indexes' scale rests on it"
+            )
         return doubts, blockers
 
     def _fragile(self, suspect: Suspect) -> str:

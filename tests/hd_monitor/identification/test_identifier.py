@@ -103,6 +103,18 @@ def test_a_lag_between_the_clocks_is_noticed():
     assert any("lag" in doubt for doubt in result.doubts)
 
 
+def test_a_sensor_that_points_the_other_way_changes_nothing():
+    truth = case(speed=1600.0, model=replace(MODEL, torque=Torque(mean=10.0)))
+    records = [replace(r, acceleration=-r.acceleration) for r in simulate(truth)]
+    assert_right(identify(records, truth.settings()), truth)
+
+
+def test_a_torque_of_another_unit_forbids_a_name():
+    truth = case(speed=1600.0, measured=True)
+    records = [replace(r, torque=3.0 * r.torque) for r in simulate(truth)]
+    assert identify(records, truth.settings()).blockers
+
+
 def test_noise_on_a_measured_torque_does_not_pass_for_vibration():
     truth = case(measured=True)
     rng = np.random.default_rng(3)
