@@ -333,3 +333,19 @@ def test_without_any_torque_the_result_is_relative(recording: Recording) -> None
     assert assessment.identification is not None
     assert assessment.identification.relative
     assert assessment.verdict.component is Component.FLEXSPLINE
+
+
+@pytest.mark.parametrize(("sensor", "effort"), [(-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)])
+def test_signs_of_sensor_and_effort_are_a_matter_of_mounting(
+    recording: Recording, sensor: float, effort: float
+) -> None:
+    monitor = Monitor("joint", SETTINGS)
+    monitor.add_motion(recording.joint_stamps, recording.position, recording.velocity, effort * recording.effort)
+    for block in recording.blocks():
+        monitor.add_block(block._replace(samples=sensor * block.samples))
+    monitor.finish()
+    found, expected = latest(monitor).identification, latest(run(recording)).identification
+    assert found is not None
+    assert expected is not None
+    for one, other, std in zip(found.index, expected.index, expected.index_std, strict=True):
+        assert one == pytest.approx(other, abs=3.0 * std)

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -122,6 +122,10 @@ class Stretch:
     def __len__(self) -> int:
         """Return the number of samples, those left out included."""
         return int(self.acceleration.size)
+
+    def mirrored(self) -> "Stretch":
+        """Return the stretch as a sensor mounted the other way round would have recorded it."""
+        return replace(self, acceleration=-self.acceleration)
 
     @property
     def duration(self) -> float:
