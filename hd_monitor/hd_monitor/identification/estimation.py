@@ -45,7 +45,6 @@ _SECOND_LOOK = 3.5  # s of motion at which the exploration made on the first sec
 _POOR = 1.5  # inflation of the variances, by what the fit leaves at the lines, from which other solutions are sought
 _NOMINAL_INDEX = 0.05  # of the larger spline, where an unknown torque leaves the scale open
 _SLIP = 0.5  # of the top speed, by which velocities may differ from the change of the positions (root mean square)
-_CLEARLY_BETTER = 30.0  # of the cost
 _ROUNDS, _FEW_ROUNDS = 8, 4
 _MOVED = 3.0  # standard deviations by which values may move before earlier stretches are linearised anew
 _START_DELAYS = (-0.012, -0.006, -0.003, 0.003, 0.006, 0.012)  # s
@@ -96,7 +95,6 @@ class Estimation:
         self._floor: NoiseFloor | None = None
         self._line_residual = LineResidual.empty(u.harmonics)
         self._explored = 0.0
-        self._sign = 1.0
         self._coverage = Coverage()
         self._conclusions = Conclusions(settings, u)
         self.result: Identification | None = None
@@ -127,8 +125,6 @@ class Estimation:
             raise ParameterError("positions and velocities of the joint contradict each other: check joint_states")
         if values.size < 4 * self._unknowns.size or float(np.ptp(values)) == 0.0:
             return
-        if self._sign < 0.0:
-            stretch = replace(stretch, acceleration=-stretch.acceleration)
         self.seconds += stretch.duration
         self._coverage = self._coverage.plus(stretch)
         self._recent.append(stretch)
@@ -284,27 +280,7 @@ class Estimation:
                 start = u.zero()
                 start[u.delay] = delay
                 starts.append(start)
-        fit = self._explore(self._anew(), starts, rounds=_ROUNDS)
-        return self._try_other_sign(fit)
-
-    def _try_other_sign(self, fit: Fit) -> Fit:
-        """Keep the fit, or one that takes the sensor's axis to point against the torque if it is clearly better.
-
-        How a sensor is mounted is arbitrary; only the coupling of the lines shows it, since without coupling another
-        sign is another phase of the defects.
-        """
-        upright = self._recent
-        self._recent = [replace(s, acceleration=-s.acceleration) for s in upright]
-        problem = self._anew()
-        start = np.where(self._unknowns.mask(self._unknowns.stiffness), -fit.values, fit.values)
-        turned = self._explore(problem, [start, start * ~self._unknowns.mask(self._unknowns.stiffness)], rounds=_ROUNDS)
-        cost = replace(problem, floor=fit.floor).at(turned.values).cost
-        if cost < replace(problem, stretches=upright, floor=fit.floor).at(fit.values).cost - _CLEARLY_BETTER:
-            self._sign = -self._sign
-            return turned
-        self._recent = upright
-        self._anew()
-        return fit
+        return self._explore(self._anew(), starts, rounds=_ROUNDS)
 
     def _question(self, fit: Fit) -> Fit:
         """Ask whether what was given agrees with the data, and estimate along what does not."""
