@@ -4,6 +4,7 @@ from collections import Counter, deque
 from dataclasses import dataclass, replace
 
 from ..identification.result import Identification
+from ..reducer import Mount
 from ..settings import JointSettings
 from .probability import Probabilities, component_probabilities, name_component
 from .verdict import Component, FaultCode, Level, Verdict
@@ -27,7 +28,10 @@ _SHARP = 0.1  # an index whose standard deviation is below this part of the limi
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """Limits on the indexes and the rules around them, from the settings ``diagnosis.*``."""
+    """Limits on the indexes and the rules around them, from the settings ``diagnosis.*``.
+
+    `motor_side` is the spline whose line is exactly twice per wave-generator revolution.
+    """
 
     warn: float
     error: float
@@ -37,6 +41,7 @@ class Limits:
     confirm_count: int
     confirm_window: int
     latch: bool
+    motor_side: Component = Component.CIRCULAR_SPLINE
 
     @classmethod
     def from_settings(cls, settings: JointSettings) -> "Limits":
@@ -50,6 +55,9 @@ class Limits:
             settings["diagnosis.confirm_count"],
             settings["diagnosis.confirm_window"],
             settings["diagnosis.latch"],
+            Component.CIRCULAR_SPLINE
+            if settings.reducer.mount is Mount.CIRCULAR_SPLINE_FIXED
+            else Component.FLEXSPLINE,
         )
 
 
@@ -190,7 +198,9 @@ class Judge:
         return Level.WARN if larger >= limits.warn * (easier if shown > Level.OK else 1.0) else Level.OK
 
     def _named(self, component: Component, level: Level, evidence: Identification) -> Verdict:
-        reason = describe_component(component, level, evidence, self._limits.warn, self._limits.error)
+        reason = describe_component(
+            component, level, evidence, self._limits.warn, self._limits.error, self._limits.motor_side
+        )
         return Verdict(component=component, level=level, fault_code=FAULT_CODES[component], reason=reason)
 
     @staticmethod

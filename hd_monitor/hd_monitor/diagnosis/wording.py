@@ -34,9 +34,17 @@ def _with_doubts(sentence: str, evidence: Identification) -> str:
 
 
 def describe_component(
-    component: Component, level: Level, evidence: Identification, warn_limit: float, error_limit: float
+    component: Component,
+    level: Level,
+    evidence: Identification,
+    warn_limit: float,
+    error_limit: float,
+    motor_side: Component,
 ) -> str:
-    """Say which part is at fault and by how much its index exceeds the limit."""
+    """Say which part is at fault and by how much its index exceeds the limit.
+
+    `motor_side` is the spline whose line is exactly twice per wave-generator revolution, as the motor's own ripple is.
+    """
     if component is Component.NONE:
         return _with_doubts(f"Both splines are sound: {_indexes(evidence)}, limit {_percent(warn_limit)}", evidence)
     limit, word = (error_limit, "defective") if level is Level.ERROR else (warn_limit, "suspect")
@@ -44,8 +52,9 @@ def describe_component(
     sentence = (
         f"The {PART_NAMES[component]} {verb} {word}: {_indexes(evidence)}, {level.name.lower()} limit {_percent(limit)}"
     )
-    if component is not Component.FLEXSPLINE:
-        sentence += "; wave generator, motor shaft and motor ripple share the circular spline's line: check them too"
+    if component in (motor_side, Component.BOTH):
+        part = PART_NAMES[motor_side]
+        sentence += f"; wave generator, motor shaft and motor ripple share the {part}'s line: check them too"
     return _with_doubts(sentence, evidence)
 
 

@@ -43,6 +43,19 @@ def test_clear_evidence_is_named(cs: float, fs: float, component: Component, lev
     assert f"{100 * fs:.1f} %" in verdict.reason
 
 
+@pytest.mark.parametrize(
+    ("mount", "shared", "own"),
+    [
+        ("circular_spline_fixed", evidence(0.10, 0.01), evidence(0.01, 0.10)),
+        ("flexspline_fixed", evidence(0.01, 0.10), evidence(0.10, 0.01)),
+    ],
+)
+def test_the_line_that_the_motor_shares_is_pointed_out(mount: str, shared: Identification, own: Identification) -> None:
+    limits = Limits.from_settings(JointSettings.from_mapping({"reducer.mount": mount}))
+    assert "motor ripple" in settled(Judge(limits), shared).reason
+    assert "motor ripple" not in settled(Judge(limits), own).reason
+
+
 def test_no_evidence_is_undetermined_and_says_what_is_missing() -> None:
     verdict = settled(Judge(LIMITS), None, "The joint has not turned")
     assert (verdict.component, verdict.level) == (Component.UNDETERMINED, Level.WARN)

@@ -19,6 +19,7 @@ from hd_monitor.model import (
     steady_state,
     table_1,
 )
+from hd_monitor.model.simulation import constant_speed, simulate
 from hd_monitor.reducer import Mount, Reducer
 
 ORACLE_MODEL = ParametricModel(
@@ -171,6 +172,18 @@ def test_frequencies_are_those_of_the_reducer():
 
 def test_the_direction_of_rotation_does_not_matter_without_phases():
     assert line_pairs(table_1(), 750.0) == line_pairs(table_1(), -750.0)
+
+
+def test_turning_back_with_phases_agrees_with_time_integration():
+    state = steady_state(ORACLE_MODEL, -1600.0, combination_order=11)
+    run = simulate(ORACLE_MODEL, constant_speed(ORACLE_MODEL.reducer, -1600.0), duration=9.0, rate=8000.0)
+    last = slice(-12_000, None)  # 1.5 s are 40 wave-generator revolutions: a whole period
+    for order in (160, 162, 320, 324):
+        line = 2.0 * np.mean(run.acceleration[last] * np.exp(-1j * order * run.output_angle[last]))
+        assert abs(state.acceleration_phasor(order)) == pytest.approx(abs(line), abs=1e-4 * 33.0)
+    assert line_pairs(ORACLE_MODEL, -1600.0)[0].flexspline != pytest.approx(
+        line_pairs(ORACLE_MODEL, 1600.0)[0].flexspline, rel=1e-4
+    )
 
 
 def test_the_other_mount_has_the_same_lines_per_output_revolution():
