@@ -175,15 +175,16 @@ def test_the_direction_of_rotation_does_not_matter_without_phases():
 
 
 def test_turning_back_with_phases_agrees_with_time_integration():
-    state = steady_state(ORACLE_MODEL, -1600.0, combination_order=11)
-    run = simulate(ORACLE_MODEL, constant_speed(ORACLE_MODEL.reducer, -1600.0), duration=9.0, rate=8000.0)
+    # phases that are no mere shift of the origin: the defects look different from behind
+    model = replace(ORACLE_MODEL, flexspline=StiffnessSeries((0.06, 0.03, 0.02), (0.0, 1.0, -2.0)))
+    state = steady_state(model, -1600.0, combination_order=11)
+    run = simulate(model, constant_speed(model.reducer, -1600.0), duration=9.0, rate=8000.0)
     last = slice(-12_000, None)  # 1.5 s are 40 wave-generator revolutions: a whole period
     for order in (160, 162, 320, 324):
         line = 2.0 * np.mean(run.acceleration[last] * np.exp(-1j * order * run.output_angle[last]))
         assert abs(state.acceleration_phasor(order)) == pytest.approx(abs(line), abs=1e-4 * 33.0)
-    assert line_pairs(ORACLE_MODEL, -1600.0)[0].flexspline != pytest.approx(
-        line_pairs(ORACLE_MODEL, 1600.0)[0].flexspline, rel=1e-4
-    )
+    back, forth = (line_pairs(model, speed)[2] for speed in (-1600.0, 1600.0))
+    assert back.flexspline != pytest.approx(forth.flexspline, rel=1e-3)
 
 
 def test_the_other_mount_has_the_same_lines_per_output_revolution():
