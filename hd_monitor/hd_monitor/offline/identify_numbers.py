@@ -6,7 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from scipy.stats import norm
+from scipy.optimize import brentq
+from scipy.stats import ncx2, norm
 
 from ..identification.indexes import stiffness_indexes
 from ..identification.result import Identification
@@ -16,6 +17,8 @@ CONFIDENCE = 0.95
 """Probability with which an interval holds the true value."""
 
 _WIDTH = float(norm.ppf(0.5 + 0.5 * CONFIDENCE))
+_CLEAR = 20.0
+"""Deviations above zero from which a magnitude's error is Gaussian."""
 _ONE = Unknowns(harmonics=1, load_orders=())
 
 
@@ -77,6 +80,44 @@ def harmonics(found: Identification) -> BothSplines:
     return BothSplines(*parts)
 
 
+class Interval(NamedTuple):
+    """Bounds of a confidence interval."""
+
+    low: float
+    high: float
+
+
+def magnitude_interval(size: float, std: float) -> Interval:
+    """Confidence interval of the magnitude of a phasor, exact where its two parts have equal deviations.
+
+    Parameters
+    ----------
+    size : float
+        Magnitude of the estimated phasor, noise included.
+    std : float
+        Standard deviation of the estimate along the phasor, in the same unit.
+
+    Notes
+    -----
+    ``(size / std)²`` has the noncentral χ² distribution of two degrees of freedom around the true ``(β / std)²``; the
+    bounds are where it leaves half of what is missing from `CONFIDENCE` on either side. Near zero a Gaussian interval
+    would hold the truth too seldom.
+    """
+    if not std > 0.0:
+        return Interval(size, size)
+    ratio = size / std
+    if not ratio < _CLEAR:
+        return Interval(size - _WIDTH * std, size + _WIDTH * std)
+
+    def bound(share: float) -> float:
+        def excess(true: float) -> float:
+            return float(ncx2.cdf(ratio**2, 2, max(true, 1e-9) ** 2)) - share
+
+        return float(brentq(excess, 0.0, ratio + 10.0)) * std if excess(0.0) > 0.0 else 0.0
+
+    return Interval(bound(0.5 + 0.5 * CONFIDENCE), max(bound(0.5 - 0.5 * CONFIDENCE), std))
+
+
 def _harmonic(k: int, phasor: complex, covariance: npt.NDArray[np.float64] | None) -> Harmonic:
     if covariance is None:
         unknown = Estimate.gaussian(abs(phasor), math.nan)
@@ -85,9 +126,14 @@ def _harmonic(k: int, phasor: complex, covariance: npt.NDArray[np.float64] | Non
     values[_ONE.circular_spline] = phasor.real, phasor.imag
     whole[_ONE.circular_spline, _ONE.circular_spline] = covariance
     magnitude = stiffness_indexes(_ONE, values, whole)
-    beta = Estimate.gaussian(magnitude.index.circular_spline, magnitude.std.circular_spline)
-    across = np.array([-phasor.imag, phasor.real])
     size = abs(phasor)
+    along, across = np.array([phasor.real, phasor.imag]), np.array([-phasor.imag, phasor.real])
+    radial = math.sqrt(float(along @ covariance @ along)) / size if size > 0.0 else 0.0
+    beta = Estimate(
+        value=magnitude.index.circular_spline,
+        std=magnitude.std.circular_spline,
+        **magnitude_interval(size, radial)._asdict(),
+    )
     std = math.sqrt(float(across @ covariance @ across)) / size**2 if size > 0.0 else math.inf
     if not std < 0.5:  # beyond, the error of a phase is no longer Gaussian, and soon it says nothing
         return Harmonic(k=k, beta=beta, phase=math.nan, phase_std=math.nan)

@@ -13,6 +13,7 @@ from ..identification.tooth_pairs import ToothPairRanking
 from . import identify_numbers as numbers
 from .identify import JointIdentification
 from .identify_numbers import Estimate, Harmonic
+from .identify_teeth import is_certain
 from .parameters import NODE
 from .result import plain
 
@@ -130,7 +131,7 @@ def refined(joint: JointIdentification) -> dict[str, Any]:
     """Parameters of a joint that the recordings tell better than what was given."""
     found, settings, values = joint.found, joint.settings, dict[str, Any]()
     assert found is not None
-    if joint.teeth is not None and joint.teeth.conclusive:
+    if joint.teeth is not None and is_certain(joint.teeth):
         teeth = joint.teeth.ranked[0].teeth
         values["reducer"] = {
             "flexspline_teeth": int(teeth.flexspline),
@@ -151,7 +152,7 @@ def refined(joint: JointIdentification) -> dict[str, Any]:
 
 def teeth_contradict(joint: JointIdentification) -> bool:
     """Whether the recordings show other teeth than the parameters give: what was identified with these is void."""
-    if joint.teeth is None or not joint.teeth.conclusive:
+    if joint.teeth is None or not is_certain(joint.teeth):
         return False
     reducer, best = joint.settings.reducer, joint.teeth.ranked[0].teeth
     return (best.flexspline, best.circular_spline) != (reducer.flexspline_teeth, reducer.circular_spline_teeth)
@@ -184,7 +185,7 @@ def _teeth(ranking: ToothPairRanking | None) -> dict[str, Any] | None:
         return None
     return {
         "statement": ranking.statement,
-        "conclusive": bool(ranking.conclusive),
+        "conclusive": is_certain(ranking),
         "margin": ranking.margin,
         "travel_deg": math.degrees(ranking.travel),
         "ranked": [

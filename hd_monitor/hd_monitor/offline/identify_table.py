@@ -8,6 +8,7 @@ from . import identify_numbers as numbers
 from .identify import JointIdentification
 from .identify_numbers import Estimate
 from .identify_result import quality_sums, teeth_contradict
+from .identify_teeth import is_certain
 
 _SHOWN = 5
 """Candidate tooth pairs shown."""
@@ -120,6 +121,8 @@ def _teeth(joint: JointIdentification) -> Iterator[str]:
         return
     reducer = joint.settings.reducer
     yield f"  tooth check ({reducer.flexspline_teeth}/{reducer.circular_spline_teeth} given): {ranking.statement}"
+    if ranking.conclusive and not is_certain(ranking):
+        yield "    only one of that pair's two lines stands out, and it fits another pair too: not conclusive"
     best = ranking.ranked[0].log_evidence
     for pair in ranking.ranked[:_SHOWN]:
         if math.isfinite(pair.log_evidence):

@@ -17,6 +17,11 @@ LONGEST = 600.0
 _APART = 10.0  # s between recordings laid end to end: no stroke goes on from one to the next
 
 
+def is_certain(ranking: ToothPairRanking | None) -> bool:
+    """Whether the first pair may replace what was given: both its lines must be found, since one fits two pairs."""
+    return ranking is not None and ranking.conclusive and ranking.ranked[0].lines_found == 2
+
+
 class ToothCheck:
     """Gathers a joint's motion over recordings and ranks candidate tooth pairs.
 
