@@ -46,7 +46,7 @@ def arm(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return rec.write(tmp_path_factory.mktemp("arm") / "bag", events)
 
 
-ARM = ("-p", "input.source:=joint_effort", "-p", "reducer.flexspline_teeth:=200")
+ARM: tuple[str, ...] = ("-p", "input.source:=joint_effort", "-p", "reducer.flexspline_teeth:=200")
 ARM += ("-p", "reducer.circular_spline_teeth:=202", "-p", "reducer.mount:=flexspline_fixed", "--joint", "elbow")
 
 
