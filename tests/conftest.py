@@ -113,13 +113,38 @@ class Peer:
         return publisher
 
     def call(self, service_type: Any, name: str, request: Any) -> Any:
-        """Call a service and return its response."""
+        """Call a service of a node once and return its response."""
         client = self.node.create_client(service_type, name)
         self.until(client.service_is_ready, f"the service {name}")
+        self._await_discovery(name.split("/", maxsplit=1)[0])
         future = client.call_async(request)
         self.until(future.done, f"an answer of the service {name}")
         self.node.destroy_client(client)
         return future.result()
+
+    def _await_discovery(self, node: str) -> None:
+        """Wait until `node` knows every client created here so far.
+
+        A ready service says that the client knows the server. The server may yet have to discover where its answers
+        go, and the middleware drops an answer it cannot deliver. Readers are announced in order: once any answer
+        reaches a client made later, the earlier ones are known too. The question asked until then changes nothing.
+        """
+        from rcl_interfaces.srv import GetParameters
+
+        probe = self.node.create_client(GetParameters, f"{node}/get_parameters")
+        self.until(probe.service_is_ready, f"the parameter services of {node}")
+        asked = -float("inf")
+        answers: list[Any] = []
+
+        def answered() -> bool:
+            nonlocal asked
+            if time.monotonic() > asked + 1.0:
+                asked = time.monotonic()
+                answers.append(probe.call_async(GetParameters.Request()))
+            return any(answer.done() for answer in answers)
+
+        self.until(answered, f"{node} to discover its clients")
+        self.node.destroy_client(probe)
 
     def close(self) -> None:
         """Take the node out of the graph."""
@@ -151,11 +176,12 @@ class Process:
     Attributes
     ----------
     popen : subprocess.Popen
+    command : str
     """
 
     def __init__(self, arguments: Sequence[str], log: Path, cwd: Path) -> None:
         self._log = log
-        self._command = " ".join(arguments)
+        self.command = " ".join(arguments)
         with log.open("wb") as output:
             self.popen = subprocess.Popen(
                 arguments, stdout=output, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, cwd=cwd
@@ -184,7 +210,7 @@ class Process:
         except subprocess.TimeoutExpired:
             self.popen.kill()
             self.popen.wait()
-            pytest.fail(f"does not end on Ctrl+C: {self._command}\n{self.output}")
+            pytest.fail(f"does not end on Ctrl+C: {self.command}\n{self.output}")
 
 
 @pytest.fixture
@@ -202,3 +228,4 @@ def start_module(tmp_path: Path) -> Iterator[Callable[..., Process]]:
     yield start
     for process in started:
         process.interrupt()
+        print(f"--- {process.command}\n{process.output}")  # pytest shows it where the test failed
