@@ -1,11 +1,12 @@
 """The joint's motion between its messages: angle, speed and torque at any time."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from scipy.interpolate import CubicHermiteSpline
 
+from ..interpolation import hermite, linear
 from .clock import recover_clock
 
 FloatArray = npt.NDArray[np.float64]
@@ -80,15 +81,16 @@ class MotionTrack:
         if self._times.size:
             good &= times > self._times[-1]
         good[1:] &= times[1:] > times[:-1]
-        dropped = int(times.size - good.sum())
+        dropped = int(times.size - np.count_nonzero(good))
         if dropped:
             times, rows = times[good], rows[good]
         if not times.size:
             return dropped
-        rows = rows.copy()
         self._times = np.concatenate([self._times, times])
         self._rows = np.concatenate([self._rows, rows])
-        self._rows[:, 0] = np.unwrap(self._rows[:, 0])
+        angle = self._rows[:, 0]
+        if float(np.abs(angle[1:] - angle[:-1]).max(initial=0.0)) > math.pi:
+            self._rows[:, 0] = np.unwrap(angle)
         return dropped
 
     def forget_before(self, time: float) -> None:
@@ -113,23 +115,30 @@ class MotionTrack:
         if self._times.size < 2 or not times.size:
             return Motion(unknown, unknown, unknown)
         known, rows = self._times, self._rows
-        steps = np.diff(known)
+        steps = known[1:] - known[:-1]
         velocity = rows[:, 1]
-        if not np.isfinite(velocity).all():
-            slopes = np.gradient(rows[:, 0], known)
-            velocity = np.where(np.isfinite(velocity), velocity, slopes)
-        angle = CubicHermiteSpline(known, rows[:, 0], velocity, extrapolate=False)(times)
-        speed = np.interp(times, known, velocity)
+        finite = np.isfinite(velocity)
+        if not finite.all():
+            velocity = np.where(finite, velocity, np.gradient(rows[:, 0], known))
+        place = np.clip(known.searchsorted(times, side="right"), 1, known.size - 1) - 1
+        length = steps[place]
+        part = (times - known[place]) / length
+        first, last = rows[place], rows[place + 1]
+        velocities = velocity[place], velocity[place + 1]
+        angle = hermite(first[:, 0], last[:, 0], velocities[0] * length, velocities[1] * length, part)
+        speed = linear(*velocities, part)
         effort = rows[:, 2]
         measured = np.isfinite(effort)
-        enough = int(measured.sum()) >= max(2, _ENOUGH_EFFORT * effort.size)
-        torque = np.interp(times, known[measured], effort[measured]) if enough else unknown.copy()
+        if measured.all():
+            torque = linear(first[:, 2], last[:, 2], part)
+        elif np.count_nonzero(measured) >= max(2, _ENOUGH_EFFORT * effort.size):
+            torque = np.interp(times, known[measured], effort[measured])
+        else:
+            torque = unknown.copy()
         limit = min(_LARGEST_HOLE, _HOLE_PERIODS * float(np.median(steps)) + 0.02)
-        place = np.searchsorted(known, times, side="right")
         outside = (times < known[0]) | (times > known[-1])
         if steps.max() > limit:
-            inside = np.clip(place, 1, known.size - 1)
-            outside |= steps[inside - 1] > limit
+            outside |= length > limit
         if outside.any():
             for values in (angle, speed, torque):
                 values[outside] = np.nan

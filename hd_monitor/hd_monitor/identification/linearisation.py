@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from ..interpolation import hermite
 from ..model.oscillator import GAUSS_OFFSETS, Oscillator
 from ..model.parameters import Dynamics
 from .stretch import Path, Stretch
@@ -136,6 +137,4 @@ def _fit_start(stretch: Stretch, motion: FloatArray) -> tuple[FloatArray, FloatA
 def _hermite(values: FloatArray, slopes: FloatArray) -> FloatArray:
     """Values at the Gauss points of every step, shape (2, steps); `slopes` are per step."""
     u = np.asarray(GAUSS_OFFSETS)[:, None]
-    rise = np.diff(values)
-    first, last = slopes[:-1] - rise, rise - slopes[1:]
-    return np.asarray(values[:-1] + u * (rise + (1.0 - u) * (first * (1.0 - u) + last * u)))
+    return hermite(values[:-1], values[1:], slopes[:-1], slopes[1:], u)

@@ -11,6 +11,7 @@ from scipy import fft
 
 from ..acquisition.record import Record
 from ..errors import ParameterError
+from ..interpolation import hermite, linear
 from ..model.oscillator import GAUSS_OFFSETS
 from ..reducer import Reducer
 from .conditioning import condition
@@ -324,12 +325,9 @@ def _common_period(records: Sequence[Record]) -> float:
 def _hermite(values: FloatArray, slopes: FloatArray, places: FloatArray) -> FloatArray:
     """Cubic Hermite interpolation on a unit grid; `slopes` are per grid step."""
     left = np.minimum(places.astype(np.intp), values.size - 2)
-    u = places - left
-    rise = values[left + 1] - values[left]
-    first, last = slopes[left] - rise, rise - slopes[left + 1]
-    return np.asarray(values[left] + u * (rise + (1.0 - u) * (first * (1.0 - u) + last * u)))
+    return hermite(values[left], values[left + 1], slopes[left], slopes[left + 1], places - left)
 
 
 def _linear(values: FloatArray, places: FloatArray) -> FloatArray:
     left = np.minimum(places.astype(np.intp), values.size - 2)
-    return np.asarray(values[left] + (places - left) * (values[left + 1] - values[left]))
+    return linear(values[left], values[left + 1], places - left)
