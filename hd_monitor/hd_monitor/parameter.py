@@ -2,10 +2,13 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Any
 
 from .errors import ParameterError
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
 
 Value = bool | int | float | str | tuple[float, ...]
 
@@ -93,6 +96,19 @@ def check_all(parameters: Sequence[Parameter], given: Mapping[str, Any], *, owne
             raise ParameterError(f"{name} is no parameter of {owner}; see msgs_doc/parameters.md for their list")
         values[name] = table[name].check(value)
     return values
+
+
+def fill_group[T: "DataclassInstance"](values: Mapping[str, Any], group: str, kind: type[T]) -> T:
+    """Fill the fields of a dataclass from the parameters of the same names below a group.
+
+    Examples
+    --------
+    >>> from hd_monitor.model import Dynamics
+    >>> values = {"dynamics.natural_frequency": 34.0, "dynamics.damping_ratio": 0.03, "dynamics.inertia": 0.9}
+    >>> fill_group(values, "dynamics", Dynamics).natural_frequency
+    34.0
+    """
+    return kind(**{field.name: values[f"{group}.{field.name}"] for field in fields(kind)})
 
 
 def flatten(nested: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:

@@ -2,15 +2,15 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from difflib import get_close_matches
-from typing import TYPE_CHECKING, Any, Self
+from typing import Any, Self
 
 from hd_monitor.errors import ParameterError
 from hd_monitor.model import Dynamics, ParametricModel, StiffnessSeries, Torque
-from hd_monitor.parameter import Parameter, Value, check_all, flatten
+from hd_monitor.parameter import Parameter, Value, check_all, fill_group, flatten
 from hd_monitor.reducer import Reducer
-from hd_monitor.settings import NODE_PARAMETERS
+from hd_monitor.settings import NODE_PARAMETERS, ROS_PARAMETERS
 from hd_monitor.settings import PARAMETERS as MONITOR_PARAMETERS
 
 from .defects import CUSTOM, stiffness_of
@@ -22,11 +22,7 @@ from .rig import Surroundings
 from .sensor import SensorSettings
 from .transport import TransportSettings
 
-if TYPE_CHECKING:
-    from _typeshed import DataclassInstance
-
 _DEGREE = math.pi / 180.0
-_ROS_OWN = ("use_sim_time", "start_type_description_service")
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,10 +56,6 @@ class RigSettings:
         """Return the value of the parameter with this dotted name."""
         return self.values[name]
 
-    def _group[T: "DataclassInstance"](self, prefix: str, kind: type[T]) -> T:
-        """Fill the fields of a settings class from the parameters below a prefix."""
-        return kind(**{field.name: self[f"{prefix}.{field.name}"] for field in fields(kind)})
-
     @property
     def remarks(self) -> list[str]:
         """What the user may not have meant, in sentences."""
@@ -78,11 +70,7 @@ class RigSettings:
     @property
     def reducer(self) -> Reducer:
         """The reducer's geometry."""
-        return Reducer(
-            flexspline_teeth=self["reducer.flexspline_teeth"],
-            circular_spline_teeth=self["reducer.circular_spline_teeth"],
-            mount=self["reducer.mount"],
-        )
+        return fill_group(self.values, "reducer", Reducer)
 
     @property
     def model(self) -> ParametricModel:
@@ -92,10 +80,10 @@ class RigSettings:
         )
         return ParametricModel(
             reducer=self.reducer,
-            dynamics=self._group("dynamics", Dynamics),
+            dynamics=fill_group(self.values, "dynamics", Dynamics),
             flexspline=flexspline,
             circular_spline=circular_spline,
-            torque=self._group("torque", Torque),
+            torque=fill_group(self.values, "torque", Torque),
         )
 
     def _custom(self, spline: str) -> StiffnessSeries:
@@ -130,17 +118,17 @@ class RigSettings:
     @property
     def sensor(self) -> SensorSettings:
         """The accelerometer."""
-        return self._group("sensor", SensorSettings)
+        return fill_group(self.values, "sensor", SensorSettings)
 
     @property
     def joint(self) -> JointSettings:
         """The joint's encoder and driver."""
-        return self._group("joint_states", JointSettings)
+        return fill_group(self.values, "joint_states", JointSettings)
 
     @property
     def transport(self) -> TransportSettings:
         """What happens to the vibration messages on their way."""
-        return self._group("transport", TransportSettings)
+        return fill_group(self.values, "transport", TransportSettings)
 
 
 def pick(given: Mapping[str, Any], also: Sequence[Parameter] = ()) -> dict[str, Any]:
@@ -160,7 +148,7 @@ def pick(given: Mapping[str, Any], also: Sequence[Parameter] = ()) -> dict[str, 
     """
     flat = flatten(given)
     own = {parameter.name for parameter in PARAMETERS}
-    foreign = {p.name for p in (*also, *MONITOR_PARAMETERS, *NODE_PARAMETERS)} | {"joints", *_ROS_OWN}
+    foreign = {p.name for p in (*also, *MONITOR_PARAMETERS, *NODE_PARAMETERS)} | {"joints", *ROS_PARAMETERS}
     joints = flat.get("joints") or ()
     for name in flat:
         if name not in own | foreign and not name.startswith(tuple(f"{joint}." for joint in joints)):

@@ -1,0 +1,16 @@
+"""Settings of the monitor: one table of parameters, read by the node, by replay and by the tests alike."""
+
+from .joint_settings import JointSettings
+from .joints import set_aside_foreign, split_joints
+from .table import INPUT_SOURCES, NODE_PARAMETERS, PARAMETERS, ROS_PARAMETERS, SENSORLESS_SOURCES
+
+__all__ = [
+    "INPUT_SOURCES",
+    "NODE_PARAMETERS",
+    "PARAMETERS",
+    "ROS_PARAMETERS",
+    "SENSORLESS_SOURCES",
+    "JointSettings",
+    "set_aside_foreign",
+    "split_joints",
+]

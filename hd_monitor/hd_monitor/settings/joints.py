@@ -1,0 +1,82 @@
+"""The parameters of a node taken apart: those of each joint, of the node itself, and of others that share the file."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from ..errors import ParameterError
+from ..parameter import flatten
+from .joint_settings import JointSettings
+from .table import NODE_PARAMETERS, PARAMETERS, ROS_PARAMETERS
+
+_BY_NAME = {parameter.name: parameter for parameter in PARAMETERS}
+_NO_JOINT_NAMES = {parameter.name for parameter in NODE_PARAMETERS} | set(ROS_PARAMETERS)
+
+
+def _is_of_the_node(name: str) -> bool:
+    """Whether a parameter belongs to the node or to ROS itself, and so to no joint."""
+    return name in _NO_JOINT_NAMES or name.startswith("qos_overrides.")
+
+
+_OWN_GROUPS = ("reducer", "dynamics", "input", "analysis", "diagnosis")
+
+
+def set_aside_foreign(given: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:
+    """Part a parameter file that is shared with other nodes: (the monitor's parameters, names of the others').
+
+    What stands below a joint or in a group that is the monitor's alone is never foreign, so that a misspelt name is
+    still refused by :func:`split_joints`.
+    """
+    flat = flatten(given)
+    joints = flat.get("joints") or ["joint"]
+    own = {*_OWN_GROUPS, *([joints] if isinstance(joints, str) else joints)}
+
+    def foreign(name: str) -> bool:
+        known = name in _BY_NAME or name == "joints" or _is_of_the_node(name)
+        return not known and not any(name.startswith(f"{group}.") for group in own)
+
+    strangers = sorted(name for name in flat if foreign(name))
+    return {name: value for name, value in flat.items() if name not in strangers}, strangers
+
+
+def _is_name(joint: object) -> bool:
+    return isinstance(joint, str) and bool(joint)
+
+
+def split_joints(given: Mapping[str, Any]) -> dict[str, JointSettings]:
+    """Settings of every joint in a node's parameters.
+
+    Parameters
+    ----------
+    given : mapping
+        Parameters, nested or dotted: `joints` (list of names; one unnamed joint called ``joint`` by default), the
+        joints' common values at the top level and each joint's own below its name.
+
+    Returns
+    -------
+    dict of str to JointSettings
+        In the order of `joints`.
+
+    Raises
+    ------
+    ParameterError
+        If a joint is named twice or a name belongs to no parameter and no joint.
+    """
+    flat = {name: value for name, value in flatten(given).items() if not _is_of_the_node(name)}
+    joints = flat.pop("joints", None) or ["joint"]
+    names = isinstance(joints, Sequence) and not isinstance(joints, str) and all(_is_name(joint) for joint in joints)
+    if not names or len(set(joints)) != len(joints):
+        raise ParameterError(f"joints = {joints!r} must be a list of different names")
+    common = {name: value for name, value in flat.items() if name in _BY_NAME}
+    rest = {name: value for name, value in flat.items() if name not in _BY_NAME}
+    settings = {}
+    for joint in joints:
+        prefix = f"{joint}."
+        own = {name[len(prefix) :]: value for name, value in rest.items() if name.startswith(prefix)}
+        rest = {name: value for name, value in rest.items() if not name.startswith(prefix)}
+        settings[joint] = JointSettings.from_mapping(common | own)
+    if rest:
+        raise ParameterError(
+            f"{', '.join(sorted(rest))}: neither parameters nor below one of the joints {', '.join(joints)}; "
+            "check the spelling"
+        )
+    return settings

@@ -1,0 +1,73 @@
+"""One joint's settings: checked alone and against each other, and turned into the model's objects."""
+
+import math
+
+import pytest
+
+from hd_monitor.errors import GeometryError, ParameterError
+from hd_monitor.reducer import Mount
+from hd_monitor.settings import INPUT_SOURCES, SENSORLESS_SOURCES, JointSettings
+
+
+def settings(**changes):
+    return JointSettings.from_mapping({name.replace("__", "."): value for name, value in changes.items()})
+
+
+def test_limits_are_in_order_by_default():
+    assert 0.0 < settings()["diagnosis.warn_index"] < settings()["diagnosis.error_index"]
+
+
+def test_nested_and_dotted_names_are_the_same():
+    nested = JointSettings.from_mapping({"reducer": {"flexspline_teeth": 100, "circular_spline_teeth": 102}})
+    assert nested == settings(reducer__flexspline_teeth=100, reducer__circular_spline_teeth=102)
+
+
+def test_equal_settings_are_equal_and_hashable():
+    assert settings() == settings()
+    assert hash(settings()) == hash(settings(diagnosis__both_ratio=0.87))
+    assert settings() != settings(diagnosis__both_ratio=0.9)
+
+
+def test_reducer_and_dynamics_are_built_from_their_groups():
+    joint = settings(
+        reducer__flexspline_teeth=200,
+        reducer__circular_spline_teeth=202,
+        reducer__mount="flexspline_fixed",
+        dynamics__natural_frequency=30,
+        dynamics__inertia=1.5,
+    )
+    assert joint.reducer.reduction == 101.0
+    assert joint.reducer.mount is Mount.FLEXSPLINE_FIXED
+    assert (joint.dynamics.natural_frequency, joint.dynamics.damping_ratio, joint.dynamics.inertia) == (30, 0.023, 1.5)
+
+
+@pytest.mark.parametrize("source", INPUT_SOURCES)
+def test_sensorless_sources_are_those_of_joint_states(source):
+    assert settings(input__source=source).sensorless == (source in SENSORLESS_SOURCES)
+    assert source.startswith("joint_") == (source in SENSORLESS_SOURCES)
+
+
+def test_an_unknown_name_is_a_key_error():
+    with pytest.raises(KeyError):
+        settings()["reducer.teeth"]
+
+
+@pytest.mark.parametrize(
+    ("changes", "error", "match"),
+    [
+        ({"reducer.teeth": 3}, ParameterError, r"reducer\.teeth is no parameter of a joint"),
+        ({"reducer.mount": "glued"}, ParameterError, "choose one of"),
+        ({"reducer.circular_spline_teeth": 161}, GeometryError, "odd"),
+        ({"reducer.flexspline_teeth": 170}, GeometryError, "swapped"),
+        ({"dynamics.natural_frequency": 0.0}, ParameterError, "Hz"),
+        ({"dynamics.natural_frequency": math.nan}, ParameterError, "outside"),
+        ({"diagnosis.error_index": 0.01}, ParameterError, "worse than a warning"),
+        ({"diagnosis.warn_index": 0.2}, ParameterError, "worse than a warning"),
+        ({"diagnosis.confirm_count": 4}, ParameterError, "never be reached"),
+        ({"analysis.harmonics": 2.0}, ParameterError, "wrong type"),
+        ({"diagnosis.latch": 1}, ParameterError, "wrong type"),
+    ],
+)
+def test_what_is_wrong_is_refused_with_the_reason(changes, error, match):
+    with pytest.raises(error, match=match):
+        JointSettings.from_mapping(changes)

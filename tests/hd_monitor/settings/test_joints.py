@@ -1,0 +1,85 @@
+"""A node's parameters taken apart: several joints in one file, the node's own, and those of others."""
+
+import pytest
+
+from hd_monitor.errors import ParameterError
+from hd_monitor.settings import NODE_PARAMETERS, set_aside_foreign, split_joints
+
+
+def test_one_joint_needs_no_name():
+    assert list(split_joints({})) == ["joint"]
+    assert split_joints({"reducer": {"serial": "A7"}})["joint"]["reducer.serial"] == "A7"
+
+
+@pytest.mark.parametrize("nothing", [[], None])
+def test_an_empty_list_of_joints_is_one_joint(nothing):
+    assert list(split_joints({"joints": nothing})) == ["joint"]
+
+
+def test_common_values_are_shared_and_own_ones_win():
+    joints = split_joints(
+        {
+            "joints": ["elbow", "wrist"],
+            "diagnosis": {"warn_index": 0.03},
+            "elbow": {"reducer": {"serial": "E"}},
+            "wrist": {"reducer.serial": "W", "diagnosis": {"warn_index": 0.02}},
+        }
+    )
+    assert list(joints) == ["elbow", "wrist"]
+    assert [joints[j]["reducer.serial"] for j in joints] == ["E", "W"]
+    assert [joints[j]["diagnosis.warn_index"] for j in joints] == [0.03, 0.02]
+
+
+def test_a_name_that_begins_like_another_is_its_own():
+    joints = split_joints({"joints": ["a", "ab"], "a.reducer.serial": "1", "ab.reducer.serial": "2"})
+    assert [joints[j]["reducer.serial"] for j in ("a", "ab")] == ["1", "2"]
+
+
+@pytest.mark.parametrize("joints", ["elbow", ["a", "a"]])
+def test_joints_are_a_list_of_different_names(joints):
+    with pytest.raises(ParameterError, match="different names"):
+        split_joints({"joints": joints})
+
+
+@pytest.mark.parametrize("joints", [[1], [""], 5, [["a"]]])
+def test_joints_are_names(joints):
+    with pytest.raises(ParameterError, match="joints"):
+        split_joints({"joints": joints})
+
+
+def test_a_misspelt_name_is_refused():
+    with pytest.raises(ParameterError, match=r"elbwo\.reducer\.serial.*elbow"):
+        split_joints({"joints": ["elbow"], "elbwo": {"reducer": {"serial": "E"}}})
+
+
+def test_a_misspelt_name_below_a_joint_is_refused():
+    with pytest.raises(ParameterError, match=r"reducer\.seriel"):
+        split_joints({"joints": ["elbow"], "elbow": {"reducer": {"seriel": "E"}}})
+
+
+def test_what_belongs_to_the_node_or_to_ros_is_left_alone():
+    values = {parameter.name: parameter.default for parameter in NODE_PARAMETERS}
+    assert list(split_joints({"joints": ["elbow"], "use_sim_time": True, **values})) == ["elbow"]
+
+
+def test_what_a_shared_file_holds_for_others_is_set_aside() -> None:
+    given = {
+        "joints": ["elbow"],
+        "reducer": {"serial": "A"},
+        "stiffness": {"flexspline": [0.1]},
+        "load": {"torque": 3.0, "fluctuation": 1.0},
+        "elbow": {"input": {"axis": "x"}},
+        "use_sim_time": True,
+    }
+    mine, foreign = set_aside_foreign(given)
+    assert foreign == ["load.fluctuation", "stiffness.flexspline"]
+    settings = split_joints(mine)["elbow"]
+    assert (settings["load.torque"], settings["input.axis"]) == (3.0, "x")
+
+
+@pytest.mark.parametrize("name", ["reducer.flexspline_tooth", "diagnosis.warn_idnex", "elbow.sensor.radius"])
+def test_a_misspelt_name_is_not_foreign(name: str) -> None:
+    mine, foreign = set_aside_foreign({"joints": ["elbow"], name: 1.0})
+    assert not foreign
+    with pytest.raises(ParameterError, match=name.removeprefix("elbow.")):
+        split_joints(mine)
