@@ -5,21 +5,15 @@ import time
 from collections.abc import Sequence
 from typing import Any
 
-import rclpy
 from rcl_interfaces.msg import SetParametersResult
-from rclpy.clock import Clock, ClockType
 from rclpy.duration import Duration
-from rclpy.exceptions import ParameterException
-from rclpy.executors import ExternalShutdownException
-from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
-from rclpy.logging import get_logger
+from rclpy.lifecycle import LifecycleState, TransitionCallbackReturn
 from rclpy.parameter import Parameter as RosParameter
 from rclpy.qos import QoSProfile
-from rclpy.task import Future
 
 from hd_monitor.errors import HdMonitorError
-from hd_monitor.parameter import Parameter
-from hd_monitor.ros.parameters import describe
+from hd_monitor.ros.declaration import answer, declare, describe
+from hd_monitor.ros.managed_node import ManagedNode, logged, run
 
 from .node_parameters import NODE_PARAMETERS
 from .parameters import CHANGEABLE, PARAMETERS
@@ -35,24 +29,15 @@ LONGEST_TURN = 0.05
 """Seconds that publishing may take before services and parameters get their turn."""
 FLUSH_TIME = 5.0
 """Seconds in which subscribers must have taken the last messages before the process ends."""
-UNUSABLE_INPUT = 2
-"""Exit status for parameters with which no rig can run."""
-
-SUCCESS = TransitionCallbackReturn.SUCCESS
 
 
-class HdSimNode(LifecycleNode):
+class HdSimNode(ManagedNode):
     """Publishes a simulated rig: configured, it has its rig at the start; active, it runs; deactivated, it pauses.
 
     Parameters
     ----------
     **options
         Passed on to the base class: ``context``, ``namespace``, ``parameter_overrides`` …
-
-    Attributes
-    ----------
-    finished : Future
-        Done when the programme has ended, or cannot begin, and ``exit_at_end`` is set.
 
     Raises
     ------
@@ -61,24 +46,17 @@ class HdSimNode(LifecycleNode):
     """
 
     def __init__(self, **options: Any) -> None:
-        super().__init__(NAME, automatically_declare_parameters_from_overrides=True, **options)
-        self.finished: Future = Future()
-        self._steady = Clock(clock_type=ClockType.STEADY_TIME)
+        super().__init__(NAME, **options)
         self._simulation: Simulation | None = None
         self._stream: Stream | None = None
         self._writers: dict[str, Writer] = {}
         self._outlets: dict[str, Any] = {}
         self._timer: Any = None
-        self._refusal: HdMonitorError | None = None
         self._declare_all()
         self.add_on_set_parameters_callback(self._check)
         self.add_post_set_parameters_callback(self._apply)
         if self.get_parameter("autostart").value:
-            self._bring_up()
-
-    def _bring_up(self) -> None:
-        if self.trigger_configure() != SUCCESS or self.trigger_activate() != SUCCESS:
-            raise self._refusal or HdMonitorError("the rig could not be started; see the log above")
+            self.bring_up()
 
     # Parameters -----------------------------------------------------------------------------------------------------
 
@@ -86,17 +64,12 @@ class HdSimNode(LifecycleNode):
         given = {p.name: p.value for p in self.get_parameters(self.list_parameters([], 0).names)}
         settings = RigSettings.from_mapping(pick(given, NODE_PARAMETERS))
         for parameter in PARAMETERS:
-            self._declare(parameter, settings[parameter.name], fixed=not parameter.name.startswith(CHANGEABLE))
+            fixed = not parameter.name.startswith(CHANGEABLE)
+            declare(self, parameter.name, settings[parameter.name], describe(parameter, read_only=fixed))
         for parameter in NODE_PARAMETERS:
             value = parameter.check(given.get(parameter.name, parameter.default))
-            self._declare(parameter, value, fixed=parameter.name != "time_scale")
-
-    def _declare(self, parameter: Parameter, value: Any, *, fixed: bool) -> None:
-        """Declare with a checked value what ROS may have declared already with the raw one."""
-        name = parameter.name
-        if self.has_parameter(name):
-            self.undeclare_parameter(name)
-        self.declare_parameter(name, value, describe(parameter, read_only=fixed), ignore_override=True)
+            fixed = parameter.name != "time_scale"
+            declare(self, parameter.name, value, describe(parameter, read_only=fixed))
 
     def _settings(self, changes: Sequence[RosParameter] = ()) -> RigSettings:
         names = [parameter.name for parameter in PARAMETERS]
@@ -105,13 +78,12 @@ class HdSimNode(LifecycleNode):
         return RigSettings.from_mapping(values)
 
     def _check(self, parameters: Sequence[RosParameter]) -> SetParametersResult:
-        try:
+        def check() -> None:
             settings = self._settings(parameters)
             if self._simulation is not None and settings != self._simulation.settings:
                 check_stability(settings)
-        except HdMonitorError as error:
-            return SetParametersResult(successful=False, reason=str(error))
-        return SetParametersResult(successful=True)
+
+        return answer(check)
 
     def _apply(self, parameters: Sequence[RosParameter]) -> None:
         settings = self._settings()
@@ -138,15 +110,14 @@ class HdSimNode(LifecycleNode):
 
     # Lifecycle ------------------------------------------------------------------------------------------------------
 
+    @logged
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Set the rig up at its start, with its publishers."""
         try:
             settings = self._settings()
             self._simulation = Simulation(settings)
         except HdMonitorError as error:
-            self._refusal = error
-            self.get_logger().error(str(error))
-            return TransitionCallbackReturn.FAILURE
+            return self.refuse(error)
         self._remark()
         scale = self.get_parameter("time_scale").value
         self._stream = Stream(self._simulation, scale)
@@ -158,6 +129,7 @@ class HdSimNode(LifecycleNode):
             self._outlets[topic] = self.create_lifecycle_publisher(writer.message_type, topic, QoSProfile(depth=depth))
         return super().on_configure(state)
 
+    @logged
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Run, as soon as enough subscribers are there."""
         self._timer = self.create_timer(PUBLISH_PERIOD, self._turn, clock=self._steady)
@@ -166,30 +138,16 @@ class HdSimNode(LifecycleNode):
             self.get_logger().info(f"waiting for {wanted} subscriber(s) of {', '.join(self._outlets)}")
         return super().on_activate(state)
 
-    def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
+    def stop_work(self) -> None:
         """Pause; activated again, the rig goes on where it was, with stamps of then."""
-        self._stop()
-        return super().on_deactivate(state)
-
-    def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Take the rig down."""
-        self._dismantle()
-        return super().on_cleanup(state)
-
-    def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Stop and take the rig down."""
-        self._stop()
-        self._dismantle()
-        return super().on_shutdown(state)
-
-    def _stop(self) -> None:
         if self._timer is not None:
             self.destroy_timer(self._timer)
             self._timer = None
         if self._stream is not None:
             self._stream.pause()
 
-    def _dismantle(self) -> None:
+    def dismantle(self) -> None:
+        """Take the rig down."""
         for outlet in self._outlets.values():
             self.destroy_lifecycle_publisher(outlet)
         self._outlets, self._writers = {}, {}
@@ -224,7 +182,7 @@ class HdSimNode(LifecycleNode):
             if self.get_parameter("exit_at_end").value:
                 for outlet in self._outlets.values():
                     outlet.wait_for_all_acked(Duration(seconds=FLUSH_TIME))
-                self.finished.set_result(None)
+                self.finished = True
 
     def _steady_time(self) -> float:
         return float(self._steady.now().nanoseconds) * 1e-9
@@ -232,25 +190,7 @@ class HdSimNode(LifecycleNode):
 
 def main(args: list[str] | None = None) -> int:
     """Run the node until it is interrupted or has ended; return 0, or 2 for parameters with which no rig can run."""
-    node = None
-    try:
-        rclpy.init(args=args)
-    except RuntimeError as error:  # a parameter file that cannot be read, or a malformed argument
-        get_logger(NAME).fatal(str(error))
-        return UNUSABLE_INPUT
-    try:
-        node = HdSimNode()
-        rclpy.spin_until_future_complete(node, node.finished)
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    except (HdMonitorError, ParameterException) as error:
-        get_logger(NAME).fatal(str(error))
-        return UNUSABLE_INPUT
-    finally:
-        if node is not None:
-            node.destroy_node()
-        rclpy.try_shutdown()
-    return 0
+    return run(NAME, HdSimNode, args)
 
 
 if __name__ == "__main__":

@@ -1,19 +1,10 @@
 """The node ``hd_monitor_node``: any number of joints, from their topics to /diagnostics."""
 
-import signal
 import sys
-import traceback
-from collections.abc import Callable
-from functools import wraps
 from typing import Any
 
-import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
-from rclpy.clock import Clock, ClockType
-from rclpy.exceptions import ParameterException
-from rclpy.executors import ExternalShutdownException
-from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
-from rclpy.logging import get_logger
+from rclpy.lifecycle import LifecycleState, TransitionCallbackReturn
 from rclpy.qos import QoSProfile
 from std_srvs.srv import Trigger
 
@@ -25,6 +16,7 @@ from ..errors import HdMonitorError
 from ..settings import JointSettings
 from .joint_channel import JointChannel, queue_depth
 from .joint_watch import MOTION
+from .managed_node import ManagedNode, logged, run
 from .messages import diagnostic_array, diagnostic_status
 from .parameters import JointParameters
 from .subscriptions import DrainedSubscription
@@ -34,30 +26,9 @@ DRAIN_PERIOD = 0.05
 """Seconds between two looks into the queues: what a verdict may come late by."""
 STATUS_PERIOD = 1.0
 """Seconds between two statuses (REP-107)."""
-UNUSABLE_INPUT = 2
-"""Exit status for parameters with which nothing can be watched."""
-
-SUCCESS = TransitionCallbackReturn.SUCCESS
 
 
-Transition = Callable[["HdMonitorNode", LifecycleState], TransitionCallbackReturn]
-
-
-def _logged(transition: Transition) -> Transition:
-    """Log an exception of a transition: the state machine of rclpy swallows it."""
-
-    @wraps(transition)
-    def logging(node: "HdMonitorNode", state: LifecycleState) -> TransitionCallbackReturn:
-        try:
-            return transition(node, state)
-        except Exception:
-            node.get_logger().error(traceback.format_exc())
-            raise
-
-    return logging
-
-
-class HdMonitorNode(LifecycleNode):
+class HdMonitorNode(ManagedNode):
     """Watches the reducers of the joints that its parameters name.
 
     Configured, it has a monitor for every joint; active, it listens and publishes. Being deactivated keeps the
@@ -75,26 +46,20 @@ class HdMonitorNode(LifecycleNode):
     """
 
     def __init__(self, **options: Any) -> None:
-        super().__init__(NAME, automatically_declare_parameters_from_overrides=True, **options)
-        self._steady = Clock(clock_type=ClockType.STEADY_TIME)
+        super().__init__(NAME, **options)
         self._channels: list[JointChannel] = []
         self._motion: DrainedSubscription | None = None
         self._own_timers: list[Any] = []
         self._own_services: list[Any] = []
         self._logged: set[str] = set()
-        self._refusal: HdMonitorError | None = None
         self._parameters_of_joints = JointParameters(self, self._change_limits)
         self._diagnostics = self.create_lifecycle_publisher(DiagnosticArray, contract.DIAGNOSTICS, QoSProfile(depth=10))
         if self.get_parameter("autostart").value:
-            self._bring_up()
-
-    def _bring_up(self) -> None:
-        if self.trigger_configure() != SUCCESS or self.trigger_activate() != SUCCESS:
-            raise self._refusal or HdMonitorError("the node could not be started; see the log above")
+            self.bring_up()
 
     # Lifecycle ------------------------------------------------------------------------------------------------------
 
-    @_logged
+    @logged
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Make a monitor for every joint, with its publishers and services."""
         settings = self._parameters_of_joints.settings
@@ -103,10 +68,8 @@ class HdMonitorNode(LifecycleNode):
             for joint, own in settings.items():
                 self._channels.append(JointChannel(self, joint, own, several, self._now()))
         except HdMonitorError as error:
-            self._refusal = error
-            self.get_logger().error(str(error))
-            self._dismantle()
-            return TransitionCallbackReturn.FAILURE
+            self.dismantle()
+            return self.refuse(error)
         self._offer("~/reset_latch", "reset_latch", self._channels)
         self._offer("~/reset", "reset", self._channels)
         if several:
@@ -115,7 +78,7 @@ class HdMonitorNode(LifecycleNode):
                 self._offer(f"~/{channel.joint}/reset", "reset", [channel])
         return super().on_configure(state)
 
-    @_logged
+    @logged
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Subscribe, and start looking into the queues."""
         settings = [channel.settings for channel in self._channels]
@@ -136,28 +99,8 @@ class HdMonitorNode(LifecycleNode):
         self.get_logger().info(f"watching {watched}")
         return super().on_activate(state)
 
-    def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
+    def stop_work(self) -> None:
         """Leave the topics; the evidence stays."""
-        self._close()
-        return super().on_deactivate(state)
-
-    def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Drop the monitors."""
-        self._dismantle()
-        return super().on_cleanup(state)
-
-    def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Leave the topics and drop the monitors."""
-        self._close()
-        self._dismantle()
-        return super().on_shutdown(state)
-
-    def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Fall back to unconfigured after an error in a transition."""
-        self.get_logger().error(f"the transition from {state.label!r} failed: unconfigured now; see the log above")
-        return self.on_shutdown(state)
-
-    def _close(self) -> None:
         for timer in self._own_timers:
             self.destroy_timer(timer)
         self._own_timers = []
@@ -167,7 +110,8 @@ class HdMonitorNode(LifecycleNode):
             self._motion.close()
             self._motion = None
 
-    def _dismantle(self) -> None:
+    def dismantle(self) -> None:
+        """Drop the monitors."""
         for service in self._own_services:
             self.destroy_service(service)
         self._own_services = []
@@ -264,27 +208,7 @@ class HdMonitorNode(LifecycleNode):
 
 def main(args: list[str] | None = None) -> int:
     """Run the node until it is interrupted; return 0, or 2 for parameters with which nothing can be watched."""
-    node = None
-    try:
-        rclpy.init(args=args)
-    except RuntimeError as error:  # a parameter file that cannot be read, or a malformed argument
-        get_logger(NAME).fatal(str(error))
-        return UNUSABLE_INPUT
-    try:
-        node = HdMonitorNode()
-        rclpy.spin(node)
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    except (HdMonitorError, ParameterException) as error:
-        get_logger(NAME).fatal(str(error))
-        return UNUSABLE_INPUT
-    finally:
-        # launch sends a second SIGINT, which must not cut the cleaning up short.
-        signal.signal(signal.SIGINT, signal.SIG_IGN)
-        if node is not None:
-            node.destroy_node()
-        rclpy.try_shutdown()
-    return 0
+    return run(NAME, HdMonitorNode, args)
 
 
 if __name__ == "__main__":

@@ -1,17 +1,16 @@
-"""The settings as ROS parameters: declared with description, unit and range, checked by the core's own rules."""
+"""The joints' settings as ROS parameters: declared on the node, and checked by the core's own rules."""
 
-import math
 import re
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor, SetParametersResult
+from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
 from rclpy.node import Node
 from rclpy.parameter import Parameter as RosParameter
 
-from ..errors import HdMonitorError, ParameterError
-from ..parameter import Parameter
+from ..errors import ParameterError
 from ..settings import NODE_PARAMETERS, PARAMETERS, JointSettings, set_aside_foreign, split_joints
+from .declaration import answer, declare, describe
 
 JOINTS = "joints"
 JOINTS_DESCRIPTION = (
@@ -59,66 +58,39 @@ class JointParameters:
         self.settings = split_joints(given)
         joints = list(self.settings)
         check_names(joints)
-        self._declare(JOINTS, joints, ParameterDescriptor(description=JOINTS_DESCRIPTION, read_only=True))
+        declare(node, JOINTS, joints, ParameterDescriptor(description=JOINTS_DESCRIPTION, read_only=True))
         for parameter in NODE_PARAMETERS:
             value = parameter.check(given.get(parameter.name, parameter.default))
-            self._declare(parameter.name, value, describe(parameter, read_only=True))
+            declare(node, parameter.name, value, describe(parameter, read_only=True))
         own = any(name.startswith(f"{joint}.") for name in given for joint in joints)
         self._by_joint = len(joints) > 1 or own
         common = split_joints({name: value for name, value in given.items() if not _below(name, joints)})[joints[0]]
         for parameter in PARAMETERS:
             fixed = self._by_joint or not parameter.name.startswith(CHANGEABLE)
-            self._declare(parameter.name, common[parameter.name], describe(parameter, read_only=fixed))
+            declare(node, parameter.name, common[parameter.name], describe(parameter, read_only=fixed))
         if self._by_joint:
             for joint, settings in self.settings.items():
                 for parameter in PARAMETERS:
                     fixed = not parameter.name.startswith(CHANGEABLE)
                     name = f"{joint}.{parameter.name}"
-                    self._declare(name, settings[parameter.name], describe(parameter, read_only=fixed))
+                    declare(node, name, settings[parameter.name], describe(parameter, read_only=fixed))
         node.add_on_set_parameters_callback(self._check)
         node.add_post_set_parameters_callback(self._apply)
 
     def _values(self) -> dict[str, Any]:
         return {name: self._node.get_parameter(name).value for name in self._node.list_parameters([], 0).names}
 
-    def _declare(self, name: str, value: Any, descriptor: ParameterDescriptor) -> None:
-        """Declare with a checked value what ROS may have declared already with the raw one."""
-        if self._node.has_parameter(name):
-            self._node.undeclare_parameter(name)
-        self._node.declare_parameter(name, value, descriptor, ignore_override=True)
-
     def _with(self, parameters: Sequence[RosParameter]) -> dict[str, JointSettings]:
         return split_joints(self._values() | {parameter.name: parameter.value for parameter in parameters})
 
     def _check(self, parameters: Sequence[RosParameter]) -> SetParametersResult:
-        try:
-            self._with(parameters)
-        except HdMonitorError as error:
-            return SetParametersResult(successful=False, reason=str(error))
-        return SetParametersResult(successful=True)
+        return answer(lambda: self._with(parameters))
 
     def _apply(self, parameters: Sequence[RosParameter]) -> None:
         settings = self._with(parameters)
         if settings != self.settings:
             self.settings = settings
             self._changed(settings)
-
-
-def describe(parameter: Parameter, *, read_only: bool) -> ParameterDescriptor:
-    """Write a parameter's description, unit, range and words as a ROS descriptor."""
-    unit = f" [{parameter.unit}]" if parameter.unit else ""
-    descriptor = ParameterDescriptor(
-        description=f"{parameter.description}{unit}",
-        read_only=read_only,
-        additional_constraints=f"one of: {', '.join(parameter.choices)}" if parameter.choices else "",
-    )
-    if math.isfinite(parameter.low) and math.isfinite(parameter.high):
-        if isinstance(parameter.default, float):
-            bounds = FloatingPointRange(from_value=float(parameter.low), to_value=float(parameter.high))
-            descriptor.floating_point_range = [bounds]
-        elif isinstance(parameter.default, int) and not isinstance(parameter.default, bool):
-            descriptor.integer_range = [IntegerRange(from_value=int(parameter.low), to_value=int(parameter.high))]
-    return descriptor
 
 
 def check_names(joints: Sequence[str]) -> None:

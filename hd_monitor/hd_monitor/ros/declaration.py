@@ -1,0 +1,44 @@
+"""The core's parameters as ROS declares them: with description, unit and range, and checked by the core's own rules."""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor, SetParametersResult
+from rclpy.node import Node
+
+from ..errors import HdMonitorError
+from ..parameter import Parameter
+
+
+def declare(node: Node, name: str, value: Any, descriptor: ParameterDescriptor) -> None:
+    """Declare with a checked value what ROS may have declared already with the raw one."""
+    if node.has_parameter(name):
+        node.undeclare_parameter(name)
+    node.declare_parameter(name, value, descriptor, ignore_override=True)
+
+
+def describe(parameter: Parameter, *, read_only: bool) -> ParameterDescriptor:
+    """Write a parameter's description, unit, range and words as a ROS descriptor."""
+    unit = f" [{parameter.unit}]" if parameter.unit else ""
+    descriptor = ParameterDescriptor(
+        description=f"{parameter.description}{unit}",
+        read_only=read_only,
+        additional_constraints=f"one of: {', '.join(parameter.choices)}" if parameter.choices else "",
+    )
+    if math.isfinite(parameter.low) and math.isfinite(parameter.high):
+        if isinstance(parameter.default, float):
+            bounds = FloatingPointRange(from_value=float(parameter.low), to_value=float(parameter.high))
+            descriptor.floating_point_range = [bounds]
+        elif isinstance(parameter.default, int) and not isinstance(parameter.default, bool):
+            descriptor.integer_range = [IntegerRange(from_value=int(parameter.low), to_value=int(parameter.high))]
+    return descriptor
+
+
+def answer(check: Callable[[], object]) -> SetParametersResult:
+    """Answer a request to set parameters: refused, with the reason, where `check` raises an error of the project."""
+    try:
+        check()
+    except HdMonitorError as error:
+        return SetParametersResult(successful=False, reason=str(error))
+    return SetParametersResult(successful=True)
