@@ -3,6 +3,7 @@
 Nothing here knows a message class: the ROS shell and the offline reader both hand over labels, sizes and data.
 """
 
+import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -97,13 +98,13 @@ def unpack_block(dimensions: Sequence[tuple[str, int, int]], data_offset: int, d
             f"the contract asks for stride = size and {BLOCK_OFFSET} values before the samples"
         )
     seconds, nanoseconds, period, sequence = values[:BLOCK_OFFSET].tolist()
-    whole = all(np.isfinite(x) and x == np.floor(x) and x >= 0 for x in (seconds, nanoseconds, sequence))
-    if not whole or nanoseconds >= NANOSECONDS or seconds >= 2.0**33:
+    whole = seconds.is_integer() and nanoseconds.is_integer() and sequence.is_integer()
+    if not whole or min(seconds, nanoseconds, sequence) < 0.0 or nanoseconds >= NANOSECONDS or seconds >= 2.0**33:
         raise LayoutError(
             f"a block starts at {seconds!r} s {nanoseconds!r} ns with number {sequence!r}; the contract asks for "
             "whole, non-negative values"
         )
-    if not (np.isfinite(period) and 0.0 < period < 10.0):
+    if not (math.isfinite(period) and 0.0 < period < 10.0):
         raise LayoutError(f"a block's sample period is {period!r} s; the contract asks for the time between samples")
     return Block(int(seconds) * NANOSECONDS + int(nanoseconds), period, int(sequence), values[BLOCK_OFFSET:])
 

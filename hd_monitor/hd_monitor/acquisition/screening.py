@@ -77,6 +77,10 @@ def _spikes(values: FloatArray) -> npt.NDArray[np.intp]:
     known = curvature[np.isfinite(curvature)]
     if known.size < 16:
         return np.empty(0, dtype=np.intp)
+    # The lower of two middle values stands for the median where it decides that nothing sticks out
+    middle = np.partition(known, (known.size - 1) // 2)[(known.size - 1) // 2]
+    if float(known.max()) <= _SPIKE * 1.4826 * float(middle):
+        return np.empty(0, dtype=np.intp)
     limit = _SPIKE * 1.4826 * float(np.median(known))
     if limit == 0.0 or not (known > limit).any():
         return np.empty(0, dtype=np.intp)

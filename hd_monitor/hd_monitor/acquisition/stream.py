@@ -70,7 +70,7 @@ class StampedBuffer:
         """Append samples: stamps [ns] of shape (N,), values of shape (N, columns)."""
         if not stamps.size:
             return
-        steps = np.diff(stamps)
+        steps = stamps[1:] - stamps[:-1]
         first, newest = int(stamps[0]), self._epochs[-1].newest
         near = newest is None or newest <= first <= newest + LEAP
         if near and not self._suspects and (not steps.size or (steps.min() >= 0 and steps.max() <= LEAP)):

@@ -1,5 +1,6 @@
 """RMS of the vibration against speed: the paper's property curve (Figs. 16 and 18)."""
 
+import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -40,6 +41,8 @@ class RmsAccumulator:
     def __init__(self, width: float) -> None:
         self._width = width
         self._sums: dict[int, tuple[float, float, int]] = {}
+        self._bins: dict[int, SpeedBin] = {}
+        self._curve: RmsCurve | None = RmsCurve()
 
     def add(self, speed_rpm: npt.ArrayLike, values: npt.ArrayLike) -> None:
         """Add samples (NaN ones are left out): wave-generator speeds [rpm] and values, both of shape (N,)."""
@@ -57,17 +60,14 @@ class RmsAccumulator:
         speeds = np.bincount(number - lowest, speed)
         for offset in np.flatnonzero(count).tolist():
             old = self._sums.get(lowest + offset, (0.0, 0.0, 0))
-            self._sums[lowest + offset] = (
-                old[0] + float(speeds[offset]),
-                old[1] + float(squares[offset]),
-                old[2] + int(count[offset]),
-            )
+            total, power = old[0] + float(speeds[offset]), old[1] + float(squares[offset])
+            samples = old[2] + int(count[offset])
+            self._sums[lowest + offset] = total, power, samples
+            self._bins[lowest + offset] = SpeedBin(total / samples, math.sqrt(power / samples), samples)
+        self._curve = None
 
     def curve(self) -> RmsCurve:
         """Return the curve collected so far."""
-        return RmsCurve(
-            tuple(
-                SpeedBin(speeds / count, float(np.sqrt(squares / count)), count)
-                for _, (speeds, squares, count) in sorted(self._sums.items())
-            )
-        )
+        if self._curve is None:
+            self._curve = RmsCurve(tuple(self._bins[number] for number in sorted(self._bins)))
+        return self._curve

@@ -44,15 +44,21 @@ def name_component(index: LinePair, limit: float, both_ratio: float) -> Componen
 
 
 def component_probabilities(evidence: Identification, limit: float, both_ratio: float) -> Probabilities:
+    """Probability of each component, given the evidence and the limits in force; see :func:`_share`."""
+    return _share(evidence.index, evidence.index_std, evidence.index_correlation, limit, both_ratio)
+
+
+@functools.lru_cache(maxsize=16)  # evidence stays the same from one period to the next more often than not
+def _share(index: LinePair, index_std: LinePair, correlation: float, limit: float, both_ratio: float) -> Probabilities:
     """Share of the indexes' joint distribution (Gaussian, cut at 0) that calls for each component.
 
     The integral is a sum over a fixed low-discrepancy set of points, so the same evidence always gives the same
     probabilities, to about 1e-3.
     """
     first, second = _standard_normal()
-    r = min(max(evidence.index_correlation, -_INDEPENDENT), _INDEPENDENT)
-    cs = evidence.index.circular_spline + evidence.index_std.circular_spline * first
-    fs = evidence.index.flexspline + evidence.index_std.flexspline * (r * first + math.sqrt(1.0 - r * r) * second)
+    r = min(max(correlation, -_INDEPENDENT), _INDEPENDENT)
+    cs = index.circular_spline + index_std.circular_spline * first
+    fs = index.flexspline + index_std.flexspline * (r * first + math.sqrt(1.0 - r * r) * second)
     cs, fs = np.maximum(cs, 0.0), np.maximum(fs, 0.0)
     larger, smaller = np.maximum(cs, fs), np.minimum(cs, fs)
     named = larger >= limit
