@@ -1,8 +1,8 @@
-"""Time integration of linear oscillators with varying stiffness: a Magnus-4 scan without a loop over samples.
+"""Time integration of linear oscillators with varying stiffness: Magnus-4 steps without a loop over samples.
 
-One step of a linear system is an affine map, and affine maps compose; so the steps are grouped in blocks, all blocks
-advance together (vectorised), and only the few block ends are chained one after the other. It is the same arithmetic
-as a step-by-step integrator, at the speed of array operations.
+One step of a linear system is an affine map. The steps are grouped in blocks, in each of which the products of the
+transition matrices (the fundamental solution) are formed for all blocks at once; with them any input's response is a
+cumulative sum (variation of constants), and only the few block ends are chained one after the other.
 """
 
 import math
@@ -20,6 +20,7 @@ GAUSS_OFFSETS = (0.5 - np.sqrt(3.0) / 6.0, 0.5 + np.sqrt(3.0) / 6.0)
 _COMMUTATOR = np.sqrt(3.0) / 12.0
 _LARGEST_PHASE_STEP = 1.0  # rad of ωn per step: beyond it the Magnus series is no longer accurate
 _SERIES_REMAINDER = 1e-17
+_LARGEST_CONDITION = 11.5  # natural logarithm of the condition of a block's matrix: five of sixteen digits at worst
 
 
 class Response(NamedTuple):
@@ -75,7 +76,7 @@ class Oscillator:
     1.0
     """
 
-    __slots__ = ("_damping", "_input_map", "_omega", "_step", "_transition", "steps")
+    __slots__ = ("_longest_block", "_omega", "_propagator", "_transition", "_weights", "steps")
 
     def __init__(self, dynamics: Dynamics, fluctuation: npt.ArrayLike, step: npt.ArrayLike) -> None:
         k = np.asarray(fluctuation, dtype=np.float64)
@@ -85,8 +86,8 @@ class Oscillator:
             )
         self.steps: int = k.shape[1]
         self._omega = omega = dynamics.angular_frequency
-        self._damping = damping = -2.0 * dynamics.damping_ratio * omega
-        self._step = h = np.broadcast_to(np.asarray(step, dtype=np.float64), (self.steps,))
+        damping = -2.0 * dynamics.damping_ratio * omega
+        h = np.broadcast_to(np.asarray(step, dtype=np.float64), (self.steps,))
         if self.steps and not (h.min() > 0.0 and h.max() * omega <= _LARGEST_PHASE_STEP):
             raise ParameterError(
                 f"steps of {h.min():.3g} to {h.max():.3g} s do not resolve a natural frequency of "
@@ -101,7 +102,17 @@ class Oscillator:
         exponent[0, 1] = h * omega
         exponent[1, 0] = h * (0.5 * (a1 + a2) + damping * skew)
         exponent[1, 1] = h * damping - w00
-        self._transition, self._input_map = _exponential_and_phi(exponent)
+        self._transition, input_map = _exponential_and_phi(exponent)
+        # Vector part of the exponent: h (b1 + b2)/2 + (√3/12) h² (A2 b1 - A1 b2) with b = (0, u). The input map takes
+        # it to what a step adds to the state: a weight for u at either Gauss point, for either component.
+        slope = _COMMUTATOR * h * h
+        parts = [(sign * omega * slope, 0.5 * h + sign * damping * slope) for sign in (1.0, -1.0)]
+        self._weights = np.stack([input_map[:, 0] * first + input_map[:, 1] * second for first, second in parts])
+        # Bound on the logarithm of the condition of one step's matrix, from its logarithmic norms
+        largest = float(np.abs(k).max(initial=0.0))
+        condition = 2.0 * omega * float(h.max(initial=0.0)) * math.hypot(dynamics.damping_ratio, 0.5 * largest)
+        self._longest_block = _LARGEST_CONDITION / max(condition, 1e-12)
+        self._propagator: _Propagator | None = None  # the stability analysis needs none
 
     @property
     def transition(self) -> FloatArray:
@@ -138,15 +149,74 @@ class Oscillator:
             )
         start = np.array(np.broadcast_to(np.asarray(initial, dtype=np.float64).reshape(2, -1), (2, u.shape[2])))
         start[0] *= self._omega
-        # Vector part of the exponent: h (b1 + b2)/2 + (√3/12) h² (A2 b1 - A1 b2) with b = (0, u)
-        h = self._step[:, None]
-        slope = _COMMUTATOR * h * h * (u[0] - u[1])
-        v0 = self._omega * slope
-        v1 = 0.5 * h * (u[0] + u[1]) + self._damping * slope
-        m = self._input_map[:, :, :, None]
-        states = _scan(self._transition, np.stack([m[0, 0] * v0 + m[0, 1] * v1, m[1, 0] * v0 + m[1, 1] * v1]), start)
+        if self._propagator is None:
+            self._propagator = _Propagator(self._transition, self._longest_block)
+        states = self._propagator.chain(self._weights, u, start)
         states[0] /= self._omega
         return Response(states[0, :, 0], states[1, :, 0]) if single else Response(states[0], states[1])
+
+
+class _Propagator:
+    """Chains x[n+1] = T[n] x[n] + w1[n] u1[n] + w2[n] u2[n] for given matrices T, shape (2, 2, steps).
+
+    Within a block that starts at x, the state after a step is P (x + Σ P⁻¹ w u), where P is the product of the
+    matrices since the block's start. Blocks are short enough for P to be well conditioned.
+    """
+
+    __slots__ = ("_inverse", "_products", "_shape", "_steps")
+
+    def __init__(self, transition: FloatArray, longest: float) -> None:
+        self._steps = transition.shape[2]
+        length = max(1, min(math.isqrt(self._steps), int(min(longest, 1e9))))
+        blocks = -(-self._steps // length)
+        self._shape = blocks, length
+        padded = np.zeros((2, 2, blocks * length))
+        padded[0, 0] = padded[1, 1] = 1.0
+        padded[:, :, : self._steps] = transition
+        maps = np.ascontiguousarray(np.moveaxis(padded.reshape(2, 2, blocks, length), 3, 0))
+        products = np.empty_like(maps)
+        product = np.zeros((2, 2, blocks))
+        product[0, 0] = product[1, 1] = 1.0
+        for j in range(length):
+            now, t = products[j], maps[j]
+            np.multiply(t[:, 0, None], product[0], out=now)
+            now += t[:, 1, None] * product[1]
+            product = now
+        p = self._products = np.ascontiguousarray(np.moveaxis(products, 0, 3)).reshape(2, 2, blocks * length)
+        self._inverse = np.array([[p[1, 1], -p[0, 1]], [-p[1, 0], p[0, 0]]]) / (p[0, 0] * p[1, 1] - p[0, 1] * p[1, 0])
+
+    def chain(self, weights: FloatArray, forcing: FloatArray, start: FloatArray) -> FloatArray:
+        """Return the states from `start` on.
+
+        Weights of shape (point, component, steps), forcing of shape (point, steps, R) and a start of shape (2, R) give
+        states of shape (2, steps + 1, R).
+        """
+        (blocks, length), steps, inputs = self._shape, self._steps, forcing.shape[2]
+        inverse, p = self._inverse[:, :, :steps], self._products[..., None]
+        sums = np.zeros((2, blocks * length, inputs))
+        term = np.empty((steps, inputs))
+        for row in range(2):
+            first, second = (inverse[row, 0] * weight[0] + inverse[row, 1] * weight[1] for weight in weights)
+            np.multiply(first[:, None], forcing[0], out=sums[row, :steps])
+            np.multiply(second[:, None], forcing[1], out=term)
+            sums[row, :steps] += term
+        by_block = sums.reshape(2, blocks, length, inputs)
+        np.cumsum(by_block, axis=2, out=by_block)
+        ends = np.moveaxis(self._products.reshape(2, 2, blocks, length)[..., -1], 2, 0)
+        gained = ends @ np.moveaxis(by_block[:, :, -1], 1, 0)
+        starts = np.empty((blocks, 2, inputs))
+        at = start
+        for block in range(blocks):
+            starts[block] = at
+            at = ends[block] @ at + gained[block]
+        by_block += np.moveaxis(starts, 0, 1)[:, :, None]
+        states = np.empty((2, steps + 1, inputs))
+        states[:, 0] = start
+        for row in range(2):
+            np.multiply(p[row, 0, :steps], sums[0, :steps], out=states[row, 1:])
+            np.multiply(p[row, 1, :steps], sums[1, :steps], out=term)
+            states[row, 1:] += term
+        return states
 
 
 def _exponential_and_phi(exponent: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -176,40 +246,3 @@ def _exponential_and_phi(exponent: FloatArray) -> tuple[FloatArray, FloatArray]:
         result[1, 1] += on_identity
         results.append(result)
     return results[0], results[1]
-
-
-def _scan(transition: FloatArray, gain: FloatArray, start: FloatArray) -> FloatArray:
-    """Chain x[n+1] = T[n] x[n] + g[n]: shapes (2, 2, N), (2, N, R), (2, R) give (2, N + 1, R)."""
-    count, inputs = gain.shape[1], gain.shape[2]
-    length = max(1, math.isqrt(count))
-    blocks = -(-count // length)
-    padding = blocks * length - count
-    if padding:
-        identity = np.broadcast_to(np.eye(2)[:, :, None], (2, 2, padding))
-        transition = np.concatenate([transition, identity], axis=2)
-        gain = np.concatenate([gain, np.zeros((2, padding, inputs))], axis=1)
-    maps = np.ascontiguousarray(np.moveaxis(transition.reshape(2, 2, blocks, length), 3, 0))[..., None]
-    gains = np.ascontiguousarray(np.moveaxis(gain.reshape(2, blocks, length, inputs), 2, 0))
-    # Every block at once: its response from rest (R columns) and its own transition so far (2 columns).
-    local = np.empty((length, 2, blocks, inputs + 2))
-    state = np.zeros((2, blocks, inputs + 2))
-    state[0, :, inputs] = state[1, :, inputs + 1] = 1.0
-    for j in range(length):
-        now, t = local[j], maps[j]
-        np.multiply(t[:, 0], state[0], out=now)
-        now += t[:, 1] * state[1]
-        now[:, :, :inputs] += gains[j]
-        state = now
-    # Then the few block ends, one after the other, and every block's true start added in.
-    ends = np.moveaxis(local[-1], 1, 0) if length else local
-    starts = np.empty((blocks, 2, inputs))
-    for b in range(blocks):
-        starts[b] = start
-        start = ends[b, :, inputs:] @ start + ends[b, :, :inputs]
-    first, second = starts[:, 0], starts[:, 1]
-    whole = local[..., :inputs]
-    whole = whole + local[..., inputs, None] * first + local[..., inputs + 1, None] * second
-    states = np.empty((2, count + 1, inputs))
-    states[:, 0] = starts[0] if blocks else start
-    states[:, 1:] = np.moveaxis(whole, 0, 2).reshape(2, blocks * length, inputs)[:, :count]
-    return states
