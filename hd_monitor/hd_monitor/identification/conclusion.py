@@ -6,15 +6,13 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import numpy.typing as npt
 
-from ..model.parameters import ParametricModel, StiffnessSeries, Torque
-from ..reducer import LinePair
+from ..model.parameters import Dynamics, ParametricModel, StiffnessSeries, Torque
 from ..settings import JointSettings
 from .coverage import Coverage
 from .indexes import stiffness_indexes
 from .knowledge import Knowledge
 from .linearisation import Predictor
 from .lines import measure_lines
-from .margin import instability_speed
 from .misfit import LineResidual
 from .noise_floor import NoiseFloor
 from .normal_equations import Evidence
@@ -29,8 +27,6 @@ BoolArray = npt.NDArray[np.bool_]
 
 WELL_KNOWN = 0.02
 """Standard deviation of the indexes over the larger of index and warn limit that satisfies."""
-
-_CHANGED = 0.03  # of the phasors, relative to the larger index, from which the instability speed is computed anew
 
 
 class Conclusions:
@@ -47,8 +43,6 @@ class Conclusions:
         self._unknowns = unknowns
         self._warn: float = settings["diagnosis.warn_index"]
         self._scrutiny = Scrutiny(settings)
-        self._margin_of = np.full(unknowns.size, math.nan)
-        self._margin = math.inf
 
     def well_known(self, result: Identification) -> bool:
         """Whether an even smaller uncertainty would be of no interest."""
@@ -113,28 +107,22 @@ class Conclusions:
             damping_ratio_std=dynamics.damping_ratio * math.sqrt(covariance[u.damping, u.damping]),
             load_fluctuation=reference * float(abs(loads[strongest])),
             load_fluctuation_std=reference * load_std,
-            instability_speed=self._instability_speed(predictor, values, indexes.index),
+            model=None if relative else self._model(dynamics, values),
             doubts=findings.doubts,
             blockers=findings.blockers,
             beta_covariance=np.stack([_of_phasors(covariance, part) for part in (u.circular_spline, u.flexspline)]),
         )
 
-    def _instability_speed(self, predictor: Predictor, values: FloatArray, index: LinePair) -> float:
-        """Instability speed, computed anew only if the unknowns behind it have changed."""
-        change = np.abs(values - self._margin_of)[: self._unknowns.load.start].max()
-        if not change <= _CHANGED * max(*index, self._warn):
-            u = self._unknowns
-            self._margin_of = values
-            self._margin = instability_speed(
-                ParametricModel(
-                    reducer=self._settings.reducer,
-                    dynamics=u.dynamics(predictor.given, values),
-                    circular_spline=StiffnessSeries.from_phasors(u.phasors(values, u.circular_spline)),
-                    flexspline=StiffnessSeries.from_phasors(u.phasors(values, u.flexspline)),
-                    torque=Torque(),
-                )
-            )
-        return self._margin
+    def _model(self, dynamics: Dynamics, values: FloatArray) -> ParametricModel:
+        """Return the reducer as identified, without its load."""
+        u = self._unknowns
+        return ParametricModel(
+            reducer=self._settings.reducer,
+            dynamics=dynamics,
+            circular_spline=StiffnessSeries.from_phasors(u.phasors(values, u.circular_spline)),
+            flexspline=StiffnessSeries.from_phasors(u.phasors(values, u.flexspline)),
+            torque=Torque(mean=0.0),
+        )
 
 
 def _of_phasors(covariance: FloatArray, part: slice) -> FloatArray:

@@ -12,6 +12,7 @@ from .linearisation import Predictor
 from .noise_floor import NoiseFloor
 from .normal_equations import Evidence, NormalEquations, examine
 from .stretch import FREQUENCY_MARGIN, Stretch
+from .unknowns import Unknowns
 
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
@@ -108,6 +109,8 @@ class Problem:
         for _ in range(rounds):
             if fit.step_size < CONVERGED:
                 break
+            if self._curvature(fit) < CONVERGED:
+                return self._moved(fit)
             step = fit.step * self._room(fit.values, fit.step)
             for _ in range(_HALVINGS):
                 trial = self.at(self._bounded(fit.values + step))
@@ -118,6 +121,24 @@ class Problem:
                 break
             fit = trial
         return fit
+
+    def _curvature(self, fit: Fit) -> float:
+        """Size of what the model is beyond linear over the next step, in standard deviations of the unknowns."""
+        effect = np.abs(fit.step) * np.sqrt((fit.equations.information + self.prior.information).diagonal())
+        return float(effect @ (np.abs(fit.step) / _linear_range(self.predictor.unknowns)))
+
+    def _moved(self, fit: Fit) -> Fit:
+        """Return the fit after its next step, which is so small that evaluating the model there adds nothing."""
+        equations = fit.equations.moved(fit.step)
+        values = fit.values + fit.step
+        return Fit(
+            values=values,
+            evidence=tuple(item.moved(fit.step) for item in fit.evidence),
+            equations=equations,
+            cost=equations.cost + self.prior.cost(values),
+            step=np.zeros(values.size),
+            step_size=0.0,
+        )
 
     def explore(self, starts: Sequence[FloatArray], *, rounds: int) -> tuple["Problem", Fit]:
         """Solve from several starts and return the best solution, with the floor of white noise that belongs to it.
@@ -170,3 +191,16 @@ class Problem:
                 break
             factor *= 0.6
         return factor
+
+
+def _linear_range(unknowns: Unknowns) -> FloatArray:
+    """Steps over which the prediction's derivatives change by about their own size; near a resonance they are small."""
+    span = np.empty(unknowns.size)
+    span[unknowns.stiffness] = 0.05
+    span[unknowns.load] = 1.0
+    span[unknowns.frequency] = 0.01
+    span[unknowns.damping] = 0.3
+    span[unknowns.torque] = 1.0
+    span[unknowns.delay] = 5e-4
+    span[unknowns.inertia] = 1.0
+    return span

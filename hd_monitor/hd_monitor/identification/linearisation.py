@@ -1,7 +1,7 @@
 """The model's prediction of a stretch, and how it changes with every unknown."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -35,6 +35,15 @@ class Linearisation:
     predicted: FloatArray
     jacobian: FloatArray
     free: FloatArray
+
+    def moved(self, stretch: Stretch, step: FloatArray) -> "Linearisation":
+        """Return the linearisation at a point a small `step` of the unknowns on, to first order of the step.
+
+        The free vibration is fitted to the measurement anew; the derivatives stay as they are.
+        """
+        start, residual = _fit_free(stretch, self.residual - self.jacobian @ step, self.free)
+        predicted = self.predicted + self.jacobian @ step + self.free @ start
+        return replace(self, residual=residual, predicted=predicted)
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -117,18 +126,21 @@ class _Along:
         forcing[..., unknowns.torque] = self._torque
         forcing[..., unknowns.inertia] = -path.acceleration
         # d cos = -sin, d(-sin) = -cos: the other column of the pair, with its sign
-        cosine, other = path.quadrature(self._lines)
-        forcing[..., unknowns.delay] = (
-            spring * path.speed * (other @ (np.where(cosine, 1.0, -1.0) * path.rates * self._beta))
-        )
+        turned = (path.rates * self._beta).reshape(2, 2, -1)[:, ::-1] * [[-1.0], [1.0]]
+        forcing[..., unknowns.delay] = spring * path.speed * (self._lines @ turned.ravel())
         return forcing
 
 
 def _fit_start(stretch: Stretch, motion: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Amounts of the two free vibrations that fit the measurement best, and what then remains of it."""
+    return _fit_free(stretch, stretch.acceleration - motion[:, 0], motion[:, 1:])
+
+
+def _fit_free(stretch: Stretch, error: FloatArray, motion: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Amounts of two free vibrations that fit an error best, and what then remains of it."""
     used, slow = stretch.used, stretch.slow
-    error = np.where(used, stretch.acceleration - motion[:, 0], 0.0)
-    free = motion[:, 1:] * used[:, None]
+    error = np.where(used, error, 0.0)
+    free = motion * used[:, None]
     flat_error, flat_free = error - slow @ (slow.T @ error), free - slow @ (slow.T @ free)
     start = np.linalg.lstsq(flat_free, flat_error, rcond=1e-9)[0]
     return start, error - free @ start

@@ -1,6 +1,6 @@
 """Evidence as normal equations: what a stretch says about the unknowns around a point, in sums that add up."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -32,6 +32,15 @@ class NormalEquations:
     cost: float
     freedom: float
 
+    def moved(self, step: FloatArray) -> "NormalEquations":
+        """Return the same quadratic model about the point that `step` leads to."""
+        downhill = self.information @ step
+        return replace(
+            self,
+            gradient=self.gradient - downhill,
+            cost=self.cost - 2.0 * float(self.gradient @ step) + float(step @ downhill),
+        )
+
     def __add__(self, other: "NormalEquations") -> "NormalEquations":
         """Pool two pieces of evidence about the same point."""
         return NormalEquations(
@@ -53,12 +62,24 @@ class Evidence:
     linearisation : Linearisation
     residual : ndarray, shape (2 * bins,)
         Transform of the residual, free vibrations taken off, not weighted.
+    derivatives : ndarray, shape (2 * bins, unknowns)
+        The same of the prediction's derivatives.
     """
 
     stretch: Stretch
     equations: NormalEquations
     linearisation: Linearisation
     residual: FloatArray
+    derivatives: FloatArray
+
+    def moved(self, step: FloatArray) -> "Evidence":
+        """Return what the stretch says at a point a small `step` of the unknowns on, to first order of the step."""
+        return replace(
+            self,
+            equations=self.equations.moved(step),
+            linearisation=self.linearisation.moved(self.stretch, step),
+            residual=self.residual - self.derivatives @ step,
+        )
 
 
 def examine(stretch: Stretch, predictor: Predictor, values: FloatArray, floor: NoiseFloor) -> Evidence:
@@ -82,4 +103,5 @@ def examine(stretch: Stretch, predictor: Predictor, values: FloatArray, floor: N
         ),
         linearisation=line,
         residual=white[:, 0] * std,
+        derivatives=white[:, 1:] * std[:, None],
     )

@@ -1,11 +1,15 @@
 """What identification hands to diagnosis: the defect indexes of both splines with their uncertainty."""
 
+import functools
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
 
+from ..model.parameters import ParametricModel
 from ..reducer import LinePair
+from .margin import instability_speed
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -54,8 +58,8 @@ class Identification:
         fn [Hz] and ζ used, and their standard deviations: 0 where they were given and not refined.
     load_fluctuation, load_fluctuation_std : float
         Identified amplitude of the unknown load fluctuation [N·m].
-    instability_speed : float
-        Lowest wave-generator speed [rpm] at which the identified reducer is parametrically unstable; inf if none.
+    model : ParametricModel or None
+        The reducer as identified, without its load; None where the indexes are relative.
     doubts : tuple of str
         What weakens the result, in words for a technician ("natural frequency 48.9 Hz fits far better than …").
         A doubt that forbids naming a part goes into `blockers` instead.
@@ -80,7 +84,18 @@ class Identification:
     damping_ratio_std: float = 0.0
     load_fluctuation: float = 0.0
     load_fluctuation_std: float = float("nan")
-    instability_speed: float = float("inf")
+    model: ParametricModel | None = None
     doubts: tuple[str, ...] = field(default=())
     blockers: tuple[str, ...] = field(default=())
     beta_covariance: npt.NDArray[np.float64] | None = None
+
+    @property
+    def instability_speed(self) -> float:
+        """Lowest wave-generator speed [rpm] at which `model` is parametrically unstable; inf if none, NaN without it.
+
+        Worked out when asked for: it takes as long as the identification of some seconds of motion.
+        """
+        return math.nan if self.model is None else _instability_speed(self.model)
+
+
+_instability_speed = functools.lru_cache(maxsize=16)(instability_speed)

@@ -204,7 +204,6 @@ class SensorlessIdentifier:
             doubts=self._doubts(LinePair(float(cs), float(fs))),
             blockers=reasons_against_naming(self._directions, self._reducer.output_orders, self._confidence),
             load_fluctuation=math.nan,
-            instability_speed=math.nan,
         )
 
     def _lines(self, groups: list[tuple[str, list[_Pooled]]], first: list[PairEstimate]) -> tuple[LineEstimate, ...]:
@@ -281,7 +280,6 @@ class SensorlessIdentifier:
             relative=True,
             blockers=reasons,
             load_fluctuation=math.nan,
-            instability_speed=math.nan,
         )
 
 
