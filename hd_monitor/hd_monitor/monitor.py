@@ -13,8 +13,9 @@ from .analysis.rms_curve import RmsAccumulator
 from .analysis.steady import SteadyStretch
 from .assessment import Assessment
 from .contract import NANOSECONDS, Block
+from .diagnosis.absence import nothing_received, partly_lost, unusable
 from .diagnosis.judge import Judge, Limits
-from .diagnosis.verdict import Component, FaultCode, Level, Verdict
+from .diagnosis.verdict import Verdict
 from .identification.identifier import Identifier
 from .identification.result import Identification
 from .identification.sensorless import SensorlessIdentifier
@@ -155,14 +156,7 @@ class Monitor:
     def silence(self, now: int) -> Assessment:
         """Say that nothing came for ``input.timeout`` until `now` [ns] by the caller's clock; the evidence is kept."""
         missing = [name for name in self._needed_names() if name not in self._seen]
-        reason = (
-            f"No {' and no '.join(missing)} received yet"
-            if missing
-            else f"No new data for {self._timeout / NANOSECONDS:g} s"
-        )
-        return self._pack(
-            now, self._lost(f"{reason}: check that the publishers run and the topics match"), math.nan, math.nan
-        )
+        return self._pack(now, nothing_received(missing, self._timeout / NANOSECONDS), None)
 
     def change_limits(self, settings: JointSettings) -> None:
         """Put the ``diagnosis.*`` parameters of other settings in force, without losing any evidence."""
@@ -200,23 +194,16 @@ class Monitor:
         evidence = self._gather(harvest)
         lost = [name for name in self._needed_names() if self._is_lost(name, end)]
         if lost:
-            verdict = self._lost(
-                f"No {' and no '.join(lost)} for {self._timeout / NANOSECONDS:g} s or more while other input goes on: "
-                "check the publisher, the topic's name and the stamps"
-            )
+            verdict = partly_lost(lost, self._timeout / NANOSECONDS)
         elif end - self._useful >= self._timeout:
-            verdict = self._unusable()
+            verdict = unusable(self._recorder.last_fault, self._timeout / NANOSECONDS)
         else:
-            verdict = self._judge.judge(evidence, self._missing(harvest))
+            verdict = self._judge.judge(evidence, "" if evidence is not None else self._missing(harvest))
             if evidence is not None and self._recorder.torque_source == "assumed":
                 note = f"no effort was measured: the torque is taken to be {self.settings['load.torque']:g} N·m"
                 verdict = replace(verdict, reason=f"{verdict.reason}; {note}")
-        speed, rms = self._speed(harvest), self._level(harvest.vibration)
-        assessment = replace(
-            self._pack(end, verdict, speed, rms), records=harvest.records, joint_samples=harvest.joint_samples
-        )
-        self._latest = assessment
-        return assessment
+        self._latest = self._pack(end, verdict, harvest)
+        return self._latest
 
     def _gather(self, harvest: Harvest) -> Identification | None:
         if isinstance(self._identifier, SensorlessIdentifier):
@@ -234,35 +221,20 @@ class Monitor:
     def _is_lost(self, name: str, end: int) -> bool:
         return bool(end - self._seen.get(name, self._timeline.epoch) >= self._timeout)
 
-    def _lost(self, reason: str) -> Verdict:
-        return Verdict(
-            component=Component.UNDETERMINED, level=Level.ERROR, fault_code=FaultCode.INPUT_LOST, reason=reason
-        )
-
-    def _unusable(self) -> Verdict:
-        fault = self._recorder.quality.last_fault
-        return Verdict(
-            component=Component.UNDETERMINED,
-            level=Level.ERROR,
-            fault_code=FaultCode.INPUT_INVALID,
-            reason=f"The vibration signal comes, but for {self._timeout / NANOSECONDS:g} s or more no sample could be "
-            f"used: {fault}; check the sensor",
-        )
-
     def _missing(self, harvest: Harvest) -> str:
         """Say why there is no evidence yet."""
         absent = [name for name in self._needed_names() if name not in self._seen]
         if absent:
             return f"No {' and no '.join(absent)} so far"
         if not self.settings.sensorless and not harvest.records:
-            fault = self._recorder.quality.last_fault
+            fault = self._recorder.last_fault
             return "No vibration with known motion in the last period" + (f": {fault}" if fault else "")
         if not self.settings.sensorless and not np.isfinite(harvest.vibration).any():
-            return f"No usable vibration sample in the last period: {self._recorder.quality.last_fault}"
+            return f"No usable vibration sample in the last period: {self._recorder.last_fault}"
         speed = self._speed(harvest)
         if not speed >= self.settings["analysis.minimum_speed"]:
             return "The joint has not turned enough yet: the lines show in motion only"
-        rate = self._recorder.quality.rate
+        rate = self._recorder.rate
         if not self.settings.sensorless and self._reducer.line_frequencies(speed).circular_spline > 0.5 * rate:
             return (
                 f"At {speed:.0f} rpm all lines lie above half the sampling rate of {rate:.0f} Hz: check that positions "
@@ -297,7 +269,7 @@ class Monitor:
         values = values[np.isfinite(values)]
         return float(np.sqrt(np.mean(values * values))) if values.size else math.nan
 
-    def _pack(self, stamp: int, verdict: Verdict, speed: float, rms: float) -> Assessment:
+    def _pack(self, stamp: int, verdict: Verdict, harvest: Harvest | None) -> Assessment:
         limits = self._judge.limits
         quality = replace(
             self._recorder.quality,
@@ -312,10 +284,12 @@ class Monitor:
             reducer=self._reducer,
             rms_curve=self._rms.curve(),
             quality=quality,
-            speed=speed,
-            rms=rms,
+            speed=self._speed(harvest) if harvest is not None else math.nan,
+            rms=self._level(harvest.vibration) if harvest is not None else math.nan,
             travel_needed=self._reducer.travel_to_separate(1),
             warn_limit=limits.warn,
             error_limit=limits.error,
             torque_source=self._recorder.torque_source,
+            records=harvest.records if harvest is not None else (),
+            joint_samples=harvest.joint_samples if harvest is not None else None,
         )

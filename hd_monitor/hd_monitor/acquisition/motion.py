@@ -135,11 +135,16 @@ class MotionTrack:
             torque = np.interp(times, known[measured], effort[measured])
         else:
             torque = unknown.copy()
-        limit = min(_LARGEST_HOLE, _HOLE_PERIODS * float(np.median(steps)) + 0.02)
         outside = (times < known[0]) | (times > known[-1])
-        if steps.max() > limit:
-            outside |= length > limit
+        longest = float(steps.max())
+        if longest > _largest_gap(float(steps.min())):  # the median is not below the least: only now it is wanted
+            outside |= length > _largest_gap(float(np.median(steps)))
         if outside.any():
             for values in (angle, speed, torque):
                 values[outside] = np.nan
         return Motion(angle, speed, torque)
+
+
+def _largest_gap(step: float) -> float:
+    """Time [s] between two messages that interpolation bridges where their typical distance is `step`."""
+    return min(_LARGEST_HOLE, _HOLE_PERIODS * step + 0.02)

@@ -2,8 +2,8 @@
 
 import itertools
 import math
-from dataclasses import dataclass, replace
-from typing import NamedTuple
+from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -19,6 +19,7 @@ from .stream import Samples
 FloatArray = npt.NDArray[np.float64]
 
 _NS = 1e-9
+_REPLACED = ("rate", "last_fault")  # of the quality, what is no counter
 _SHORTEST_RECORD = 8  # samples
 _STANDING = 1e-3  # rad of output travel in a period, below which a constant signal is no sign of a stuck sensor
 
@@ -65,7 +66,7 @@ class Recorder:
         self._track = MotionTrack()
         self._grid: _Grid | None = None
         self._joined = False
-        self.quality = Quality()
+        self._counts: dict[str, Any] = {}
         self.torque_source = "unknown"
 
     def cut(self) -> None:
@@ -76,12 +77,24 @@ class Recorder:
 
     def count(self, **changes: int | float | str) -> None:
         """Add to counters of the quality; words and the rate replace the old value."""
-        old = self.quality
-        values = {
-            name: value if isinstance(value, str) or name == "rate" else getattr(old, name) + value
-            for name, value in changes.items()
-        }
-        self.quality = replace(old, **values)  # type: ignore[arg-type]
+        counts = self._counts
+        for name, value in changes.items():
+            counts[name] = value if name in _REPLACED else counts.get(name, 0) + value
+
+    @property
+    def quality(self) -> Quality:
+        """The counters so far; those of single samples' order and of the clock are the buffers'."""
+        return Quality(**self._counts)
+
+    @property
+    def rate(self) -> float:
+        """Sampling rate [Hz]; 0 before anything came."""
+        return float(self._counts.get("rate", 0.0))
+
+    @property
+    def last_fault(self) -> str:
+        """The newest complaint in words; empty if there is none."""
+        return str(self._counts.get("last_fault", ""))
 
     def harvest(self, vibration: Samples, motion: Samples, next_motion: Samples, epoch: int, end: int) -> Harvest:
         """Join the samples of one period.

@@ -160,10 +160,14 @@ class StampedBuffer:
         taken, left = [], []
         for chunk in epoch.chunks:
             early = chunk.stamps < until
-            if early.all():
+            count = int(np.count_nonzero(early))
+            if count == early.size:
                 taken.append(chunk)
-            elif not early.any():
+            elif not count:
                 left.append(chunk)
+            elif early[:count].all():
+                taken.append(Samples(chunk.stamps[:count], chunk.values[:count]))
+                left.append(Samples(chunk.stamps[count:], chunk.values[count:]))
             else:
                 taken.append(Samples(chunk.stamps[early], chunk.values[early]))
                 left.append(Samples(chunk.stamps[~early], chunk.values[~early]))
