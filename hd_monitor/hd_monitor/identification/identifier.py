@@ -10,7 +10,7 @@ from .collector import Collector
 from .estimation import Estimation
 from .result import Identification
 
-CRUISE_STRETCH, CRUISE_PERIOD = 2.0, 16.0
+CRUISE_STRETCH, CRUISE_PERIOD = 2.0, 32.0
 """Length [s] of the stretches looked at, and time [s] between them, once the indexes are known well enough."""
 
 LONGEST_STRETCH = 4.0

@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
+import numpy.typing as npt
 
 from ..reducer import LinePair, Reducer
 from .noise_floor import NoiseFloor
@@ -47,13 +48,16 @@ def measure_lines(
     lowest_order, highest_order = reducer.output_orders
     seen = math.floor(min(s.highest_frequency for s in newest) * math.tau / (highest_order * top_speed + 1e-9))
     pairs = range(1, min(harmonics, seen) + 1)
-    orders = [order for k in pairs for order in (k * lowest_order, k * highest_order)]
-    if float(np.ptp(angle)) > _SIDE_TRAVEL:
-        gap = highest_order - lowest_order
-        orders += [k * lowest_order + m * gap for k in pairs for m in range(-1, k + 2) if m not in (0, k)]
     if not pairs:
         return ()
-    phase = np.exp(1j * np.multiply.outer(np.asarray(orders), angle))
+    gap = highest_order - lowest_order
+    places = [place for k in pairs for place in ((k, 0), (k, k))]  # (k, m): k times the lowest order, m gaps above
+    if float(np.ptp(angle)) > _SIDE_TRAVEL:
+        places += [(k, m) for k in pairs for m in range(-1, k + 2) if m not in (0, k)]
+    orders = [k * lowest_order + m * gap for k, m in places]
+    # Products of two exponentials, many times as fast as one exponential for every order
+    base, side = (_powers(np.exp(1j * order * angle), len(pairs) + 1) for order in (lowest_order, gap))
+    phase = np.stack([base[k] * (side[m] if m >= 0 else side[-m].conj()) for k, m in places])
     columns = np.concatenate([phase.real, -phase.imag])
     gram = columns @ columns.T
     squares = np.linalg.eigvalsh(gram)
@@ -73,3 +77,11 @@ def measure_lines(
         )
         for k in pairs
     )
+
+
+def _powers(unit: npt.NDArray[np.complex128], highest: int) -> list[npt.NDArray[np.complex128]]:
+    """Return the powers 0, 1, … `highest`."""
+    powers = [np.ones_like(unit)]
+    for _ in range(highest):
+        powers.append(powers[-1] * unit)
+    return powers
