@@ -15,7 +15,7 @@ from .identify import JointIdentification
 from .identify_numbers import Estimate, Harmonic
 from .identify_teeth import is_certain
 from .parameters import NODE
-from .result import plain
+from .result import line_entries, plain
 
 _SHOWN = 5
 """Candidate tooth pairs listed."""
@@ -51,16 +51,7 @@ def joint_entry(joint: JointIdentification) -> dict[str, Any]:
         "load_fluctuation": None,
         "instability_speed_rpm": found.instability_speed,
         "never_unstable": math.isinf(found.instability_speed),
-        "lines": [
-            {
-                "k": line.k,
-                "circular_spline": line.amplitude.circular_spline,
-                "flexspline": line.amplitude.flexspline,
-                "circular_spline_std": line.std.circular_spline,
-                "flexspline_std": line.std.flexspline,
-            }
-            for line in found.lines
-        ],
+        "lines": line_entries(found),
         "directions": [
             {
                 "direction": d.name,

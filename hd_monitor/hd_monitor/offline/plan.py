@@ -28,6 +28,8 @@ class JointPlan:
         Its name in the parameters.
     settings : JointSettings
     topics : JointTopics
+    messages : tuple of (int, int)
+        Messages recorded on the topics of vibration and motion; of all joints where they share a topic.
     notes : tuple of str
         What was taken for granted.
     """
@@ -35,6 +37,7 @@ class JointPlan:
     joint: str
     settings: JointSettings
     topics: JointTopics
+    messages: tuple[int, int]
     notes: tuple[str, ...] = ()
 
 
@@ -87,12 +90,17 @@ def plan(bag: Bag, request: Request) -> list[JointPlan]:
     settings = split_joints(parameters)
     if unknown := [joint for joint in request.joints if joint not in settings]:
         raise ParameterError(f"{', '.join(unknown)}: not among the parameters' joints, {', '.join(settings)}")
+
+    def count(topic: str | None) -> int:
+        return sum(recorded.messages for recorded in bag.topics if recorded.name == topic)
+
     plans = []
     for joint, own in settings.items():
         if request.joints and joint not in request.joints:
             continue
         topics = finder.joint_topics(own[_SOURCE], joint if several else None)
-        plans.append(JointPlan(joint=joint, settings=own, topics=topics, notes=tuple(notes)))
+        messages = count(topics.vibration), count(topics.motion)
+        plans.append(JointPlan(joint=joint, settings=own, topics=topics, messages=messages, notes=tuple(notes)))
     return plans
 
 

@@ -5,11 +5,11 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from .. import __version__
-from ..adapters import VIBRATION_SOURCES
 from ..assessment import Assessment
 from ..contract import NANOSECONDS
 from ..diagnosis.status import status_of
 from ..diagnosis.verdict import Level
+from ..identification.result import Identification
 from .plan import JointPlan
 from .replay import Replayed
 
@@ -44,6 +44,20 @@ def verdict_entry(assessment: Assessment) -> dict[str, Any]:
     }
 
 
+def line_entries(found: Identification | None) -> list[dict[str, Any]]:
+    """Write the amplitudes of the characteristic lines and their standard deviations [rad/s²]."""
+    return [
+        {
+            "k": line.k,
+            "circular_spline": line.amplitude.circular_spline,
+            "flexspline": line.amplitude.flexspline,
+            "circular_spline_std": line.std.circular_spline,
+            "flexspline_std": line.std.flexspline,
+        }
+        for line in (found.lines if found else ())
+    ]
+
+
 @dataclass(slots=True)
 class JointResult:
     """What was said of one joint, collected as it comes.
@@ -76,33 +90,34 @@ class JointResult:
         """Why nothing can be said of the joint; empty if something can."""
         if self.last is None:
             return f"joint {self.plan.joint!r}: too few messages were recorded for a single verdict"
-        quality = self.last.quality
-        fault = quality.last_fault
+        quality, topics, (vibration, motion) = self.last.quality, self.plan.topics, self.plan.messages
         if not quality.motion_messages:
-            return f"joint {self.plan.joint!r}: no usable joint states{_because(fault)}"
-        if self.plan.settings["input.source"] in VIBRATION_SOURCES and not quality.samples:
-            return f"joint {self.plan.joint!r}: no usable vibration samples{_because(fault)}"
+            return f"joint {self.plan.joint!r}: no usable joint states: {self._why(topics.motion, motion)}"
+        if topics.vibration is not None and not quality.samples:
+            return f"joint {self.plan.joint!r}: no usable vibration samples: {self._why(topics.vibration, vibration)}"
         return ""
+
+    def _why(self, topic: str, messages: int) -> str:
+        """Say why nothing of a topic could be used."""
+        assert self.last is not None
+        if fault := self.last.quality.last_fault:
+            return fault
+        if self.plan.topics.vibration is None:
+            return f"the recording's {messages} message(s) on {topic} are too few"
+        return (
+            f"those recorded on {topic} ({messages}) and those of the other input hardly overlap in time, by their "
+            "stamps; record both together for some seconds"
+        )
 
     def as_dict(self) -> dict[str, Any]:
         """Write the joint's part of the JSON."""
         last, plan = self.last, self.plan
         if last is None:
             return {"joint": plan.joint, "verdict": None, "lines": [], "rms_curve": [], "timeline": self.timeline}
-        lines = last.identification.lines if last.identification else ()
         entry = {
             "joint": plan.joint,
             "verdict": verdict_entry(last),
-            "lines": [
-                {
-                    "k": line.k,
-                    "circular_spline": line.amplitude.circular_spline,
-                    "flexspline": line.amplitude.flexspline,
-                    "circular_spline_std": line.std.circular_spline,
-                    "flexspline_std": line.std.flexspline,
-                }
-                for line in lines
-            ],
+            "lines": line_entries(last.identification),
             "rms_curve": [{"rpm": rpm, "rms": rms, "samples": samples} for rpm, rms, samples in last.rms_curve.bins],
             "timeline": self.timeline,
             "relative": bool(last.identification.relative) if last.identification else None,
@@ -125,7 +140,3 @@ def as_dict(bag: str, notes: list[str], joints: list[JointResult]) -> dict[str, 
         "notes": notes,
         "generator": f"hd_monitor {__version__}",
     }
-
-
-def _because(fault: str) -> str:
-    return f" ({fault})" if fault else " were recorded"
