@@ -39,6 +39,14 @@ class RawTopic(NamedTuple):
     messages: int
 
 
+def _check_beginning(path: Path, magic: bytes, kind: str) -> None:
+    with path.open("rb") as file:
+        begun = file.read(len(magic))
+    if begun != magic:
+        what = f"does not begin as {kind} does" if begun else "is empty"
+        raise BagError(f"{path} {what}: nothing can be read from it; give another recording")
+
+
 class DamagedMcap:
     """An MCAP file read record by record.
 
@@ -59,11 +67,7 @@ class DamagedMcap:
         self._note = note
         self._types: dict[int, str] = {}
         self._channels: dict[int, tuple[str, str]] = {}
-        with path.open("rb") as file:
-            magic = file.read(len(MCAP_MAGIC))
-        if magic != MCAP_MAGIC:
-            what = "is empty" if not magic else "does not begin as an MCAP file does"
-            raise BagError(f"{path} {what}: nothing can be read from it; give another recording")
+        _check_beginning(path, MCAP_MAGIC, "an MCAP file")
 
     def topics(self) -> list[RawTopic]:
         """Find the topics and count their messages, in one walk through the file."""
@@ -190,11 +194,7 @@ class DamagedSqlite:
     def __init__(self, path: Path, note: Callable[[str], None]) -> None:
         self._path = path
         self._note = note
-        with path.open("rb") as file:
-            magic = file.read(len(SQLITE_MAGIC))
-        if magic != SQLITE_MAGIC:
-            what = "is empty" if not magic else "does not begin as a SQLite file does"
-            raise BagError(f"{path} {what}: nothing can be read from it; give another recording")
+        _check_beginning(path, SQLITE_MAGIC, "a SQLite file")
         try:
             with closing(self._connect()) as database:
                 rows = database.execute("SELECT id, name, type FROM topics").fetchall()
