@@ -12,6 +12,7 @@ from ...contract import NANOSECONDS
 from ...settings import JointSettings
 from .lines_by_speed import LinesBySpeed
 from .spectra import OrderMapAccumulator, filled
+from .speed_bins import SpeedBins
 from .waterfall import WaterfallAccumulator
 
 FloatArray = npt.NDArray[np.float64]
@@ -44,14 +45,13 @@ class Collector:
     """
 
     def __init__(self, settings: JointSettings) -> None:
-        reducer, width = settings.reducer, settings["analysis.rms_bin_width"]
-        harmonics, minimum = settings["analysis.harmonics"], settings["analysis.minimum_speed"]
+        reducer, harmonics = settings.reducer, settings["analysis.harmonics"]
+        speeds = SpeedBins(reducer, settings["analysis.rms_bin_width"], settings["analysis.minimum_speed"])
         self._source: str = settings["input.source"]
         self.settings = settings
-        self.order_map = OrderMapAccumulator(
-            reducer, width, minimum, harmonics * max(reducer.circular_spline_order, reducer.flexspline_order) + 1.0
-        )
-        self.lines = LinesBySpeed(reducer, width, minimum, harmonics)
+        highest = harmonics * max(reducer.circular_spline_order, reducer.flexspline_order) + 1.0
+        self.order_map = OrderMapAccumulator(speeds, highest)
+        self.lines = LinesBySpeed(speeds, harmonics)
         self.waterfall = WaterfallAccumulator()
         self.best: Assessment | None = None
         self.zoom: ZoomSpectrum | None = None

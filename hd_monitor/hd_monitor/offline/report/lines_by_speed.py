@@ -1,13 +1,13 @@
 """Amplitudes of the characteristic lines at each speed, by regression with known orders on the joint's angle."""
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from ...acquisition.record import Record
-from ...reducer import LinePair, Reducer
+from ...reducer import LinePair
+from .speed_bins import SpeedBins
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -49,38 +49,32 @@ class LinesBySpeed:
 
     Parameters
     ----------
-    reducer : Reducer
-    width : float
-        Width of the speed bins [rpm].
-    minimum_speed : float
-        Wave-generator speed [rpm] below which the joint counts as standing.
+    speeds : SpeedBins
     harmonics : int
         Number of line pairs.
     """
 
-    def __init__(self, reducer: Reducer, width: float, minimum_speed: float, harmonics: int) -> None:
-        self._reducer = reducer
-        self._width = width
-        self._minimum = minimum_speed
+    def __init__(self, speeds: SpeedBins, harmonics: int) -> None:
+        self._speeds = speeds
         self._harmonics = harmonics
         self._bins: dict[tuple[int, bool], _Normal] = {}
 
     def add(self, record: Record) -> None:
         """Take a record's samples, each in its speed bin."""
-        rpm = record.speed * self._reducer.reduction * 60.0 / math.tau
-        good = np.isfinite(record.acceleration) & (np.abs(rpm) > self._minimum)
-        if not good.any() or float(np.ptp(rpm)) > _FASTEST_CHANGE * self._width:
+        rpm = self._speeds.rpm(record)
+        good = np.isfinite(record.acceleration) & self._speeds.turning(rpm)
+        if not good.any() or float(np.ptp(rpm)) > _FASTEST_CHANGE * self._speeds.width:
             return
         rpm, values = rpm[good], record.acceleration[good]
         columns = self._columns(record.angle[good])
-        number = np.rint(np.abs(rpm) / self._width).astype(np.int64) * np.where(rpm < 0, -1, 1)
-        for key in np.unique(number).tolist():
-            mine = number == key
+        signed = self._speeds.number(rpm) * np.where(rpm < 0, -1, 1)
+        for key in np.unique(signed).tolist():
+            mine = signed == key
             normal = self._bins.setdefault((abs(key), key < 0), _Normal(columns.shape[1]))
             normal.add(columns[mine], values[mine], rpm[mine])
 
     def _columns(self, angle: FloatArray) -> FloatArray:
-        orders = self._reducer.output_orders
+        orders = self._speeds.reducer.output_orders
         phases = np.array([k * order for k in range(1, self._harmonics + 1) for order in orders])
         arguments = np.multiply.outer(angle, phases)
         return np.concatenate([np.cos(arguments), np.sin(arguments), np.ones((angle.size, 1))], axis=1)

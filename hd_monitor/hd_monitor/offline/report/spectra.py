@@ -8,7 +8,7 @@ import numpy.typing as npt
 from scipy.signal import get_window
 
 from ...acquisition.record import Record
-from ...reducer import Reducer
+from .speed_bins import SpeedBins
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -102,28 +102,22 @@ class OrderMapAccumulator:
 
     Parameters
     ----------
-    reducer : Reducer
-    width : float
-        Width of the speed bins [rpm].
-    minimum_speed : float
-        Wave-generator speed [rpm] below which the joint counts as standing.
+    speeds : SpeedBins
     highest : float
         Highest order shown.
     """
 
     _STEP = 0.05
 
-    def __init__(self, reducer: Reducer, width: float, minimum_speed: float, highest: float) -> None:
-        self._reduction = reducer.reduction
-        self._width = width
-        self._minimum = minimum_speed
+    def __init__(self, speeds: SpeedBins, highest: float) -> None:
+        self._speeds = speeds
         self._orders = np.arange(0.0, highest + self._STEP / 2, self._STEP)
         self._squares: dict[int, tuple[FloatArray, FloatArray]] = {}
 
     def add(self, record: Record) -> None:
         """Take the pieces of a record in which the joint turns one way."""
-        rpm = record.speed * self._reduction * 60.0 / math.tau
-        turning = np.where(np.abs(rpm) > self._minimum, np.sign(rpm), 0.0)
+        rpm = self._speeds.rpm(record)
+        turning = np.where(self._speeds.turning(rpm), np.sign(rpm), 0.0)
         edges = np.flatnonzero(np.diff(turning)) + 1
         values = filled(record.acceleration)
         if len(whole_runs(record.acceleration)) != 1:
@@ -135,7 +129,7 @@ class OrderMapAccumulator:
     def _piece(self, angle: FloatArray, values: FloatArray, rpm: FloatArray) -> None:
         if not bool((np.diff(angle) > 0).all()):
             return
-        revolutions = float(angle[-1] - angle[0]) * self._reduction / math.tau
+        revolutions = float(angle[-1] - angle[0]) * self._speeds.reducer.reduction / math.tau
         even = np.interp(np.linspace(angle[0], angle[-1], angle.size), angle, values)
         window = get_window("hann", even.size)
         amplitude = 2.0 * np.abs(np.fft.rfft(window * (even - even.mean()))) / window.sum()
@@ -148,7 +142,7 @@ class OrderMapAccumulator:
             inside = place < shown.size
             np.maximum.at(shown, place[inside], amplitude[inside])
             shown[self._orders > orders[-1]] = np.nan
-        number = round(float(np.abs(rpm).mean()) / self._width)
+        number = int(self._speeds.number(np.abs(rpm).mean(keepdims=True))[0])
         total, count = self._squares.get(number, (np.zeros(shown.size), np.zeros(shown.size)))
         known = np.isfinite(shown)
         self._squares[number] = (total + np.where(known, shown**2, 0.0), count + known)
@@ -162,4 +156,4 @@ class OrderMapAccumulator:
         for number in numbers:
             total, count = self._squares[number]
             rows.append(np.sqrt(np.divide(total, count, out=np.full(total.size, np.nan), where=count > 0)))
-        return OrderMap(np.array(numbers) * self._width, self._orders, np.array(rows))
+        return OrderMap(np.array(numbers) * self._speeds.width, self._orders, np.array(rows))

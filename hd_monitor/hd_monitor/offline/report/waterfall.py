@@ -47,9 +47,8 @@ class WaterfallAccumulator:
         values = filled(record.acceleration)
         window = get_window("hann", values.size)
         fine = 2.0 * np.abs(np.fft.rfft(window * values)) / window.sum()
-        place = np.minimum((np.arange(fine.size) * _BINS) // fine.size, _BINS - 1)
-        row = np.zeros(_BINS)
-        np.maximum.at(row, place, fine)
+        # Where a short record has fewer lines than there are bins, bins without one take their neighbour's.
+        row = np.maximum.reduceat(fine, np.arange(_BINS) * fine.size // _BINS)
         first, last = record.start, record.start + record.period * len(record)
         if self._waiting and self._rows:
             begun, _, old = self._rows[-1]

@@ -1,0 +1,42 @@
+"""Bins of wave-generator speed, by which a report's analyses part the records of a run."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from ...acquisition.record import Record
+from ...reducer import Reducer
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class SpeedBins:
+    """Bins of one width, and the speed below which the joint counts as standing.
+
+    Parameters
+    ----------
+    reducer : Reducer
+    width : float
+        Of the bins [rpm of the wave generator].
+    minimum_speed : float
+        Wave-generator speed [rpm] below which the joint counts as standing.
+    """
+
+    reducer: Reducer
+    width: float
+    minimum_speed: float
+
+    def rpm(self, record: Record) -> FloatArray:
+        """Wave-generator speed at each sample [rpm], with the output's sign."""
+        return np.asarray(record.speed * self.reducer.reduction * 60.0 / math.tau)
+
+    def turning(self, rpm: FloatArray) -> npt.NDArray[np.bool_]:
+        """Whether the joint turns, at each speed [rpm]."""
+        return np.asarray(np.abs(rpm) > self.minimum_speed)
+
+    def number(self, rpm: FloatArray) -> npt.NDArray[np.int64]:
+        """Number of the bin of each speed [rpm], whatever the direction; bin n is centred on n widths."""
+        return np.asarray(np.rint(np.abs(rpm) / self.width), dtype=np.int64)
