@@ -22,8 +22,10 @@ def indexes_plot(
 
     The limits apply to indexes that are not relative only.
     """
-    first = timeline[0]["stamp"]
-    seconds = np.array([(entry["stamp"] - first) / 1e9 for entry in timeline])
+    stamps = np.array([entry["stamp"] for entry in timeline], dtype=np.int64)
+    seconds = (stamps - stamps[0]) / 1e9
+    step = float(np.median(np.diff(seconds))) if seconds.size > 1 else 1.0
+    seconds += step  # the first entry speaks of the time before it
     with new_figure((8.0, 4.6)) as figure:
         axes, below = figure.subplots(2, 1, sharex=True, height_ratios=(8, 1))
         highest = 0.0 if relative else error
@@ -44,14 +46,13 @@ def indexes_plot(
         axes.set_ylabel("relative index [%]" if relative else "stiffness index [%]")
         axes.set_title(title)
         legend_above(axes)
-        _levels(below, seconds, [int(entry["level"]) for entry in timeline])
+        _levels(below, seconds, step, [int(entry["level"]) for entry in timeline])
         below.set_xlabel("time [s]")
         return figure
 
 
-def _levels(axes: Any, seconds: npt.NDArray[np.float64], levels: Sequence[int]) -> None:
+def _levels(axes: Any, seconds: npt.NDArray[np.float64], step: float, levels: Sequence[int]) -> None:
     """Draw the level as a ribbon, hatched, so that its colours are not needed."""
-    step = float(np.median(np.diff(seconds))) if seconds.size > 1 else 1.0
     shown = set()
     start = 0
     for place in range(1, len(levels) + 1):

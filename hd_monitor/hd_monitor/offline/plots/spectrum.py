@@ -32,8 +32,8 @@ def spectrum_plot(
                     )  # fmt: skip
             if pair.flexspline < spectrum.axis[-1]:
                 axes.annotate(
-                    f"k = {number + 1}", (pair.flexspline, 0.97), xycoords=("data", "axes fraction"), ha="center",
-                    va="top", fontsize=9.5,
+                    f"k = {number + 1}", (pair.flexspline, 0.985), xycoords=("data", "axes fraction"), xytext=(3, 0),
+                    textcoords="offset points", rotation=90, ha="left", va="top", fontsize=9,
                 )  # fmt: skip
         if natural_frequency < spectrum.axis[-1]:
             axes.axvline(

@@ -7,9 +7,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import matplotlib as mpl
+import numpy as np
+import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+
+FloatArray = npt.NDArray[np.float64]
 
 DOTS_PER_INCH = 150
 WIDE = (8.0, 4.2)
@@ -74,6 +78,14 @@ def png(figure: Figure) -> bytes:
     buffer = io.BytesIO()
     figure.savefig(buffer, format="png", dpi=DOTS_PER_INCH)
     return buffer.getvalue()
+
+
+def draw_spectrum(axes: Axes, position: FloatArray, amplitude: FloatArray) -> None:
+    """Draw an amplitude spectrum on a linear scale, the area below it shaded, over the whole width."""
+    axes.fill_between(position, amplitude, color=INK, alpha=0.08, linewidth=0)
+    axes.plot(position, amplitude, color=INK, linewidth=1.5)
+    axes.set_xlim(position[0], position[-1])
+    axes.set_ylim(bottom=0.0)
 
 
 def room_above(axes: Axes, share: float) -> None:

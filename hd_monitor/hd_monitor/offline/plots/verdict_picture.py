@@ -7,9 +7,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ...analysis.zoom import ZoomSpectrum
-from .style import CIRCULAR_SPLINE, FLEXSPLINE, INK, SOFT, Look, new_figure, room_above
+from .style import CIRCULAR_SPLINE, FLEXSPLINE, SOFT, Look, draw_spectrum, new_figure, room_above
 
 _TITLE_WIDTH = 78
+_PAPER = {"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 1.5}
+"""Under the labels, which may cross the curve."""
 
 
 def verdict_picture(zoom: ZoomSpectrum, *, title: str, subtitle: str = "", unit: str = "rad/s²") -> Figure:
@@ -27,17 +29,14 @@ def verdict_picture(zoom: ZoomSpectrum, *, title: str, subtitle: str = "", unit:
     """
     with new_figure() as figure:
         axes = figure.add_subplot()
-        axes.fill_between(zoom.frequencies, zoom.amplitude, color=INK, alpha=0.08, linewidth=0)
-        axes.plot(zoom.frequencies, zoom.amplitude, color=INK, linewidth=1.5)
-        axes.set_xlim(zoom.frequencies[0], zoom.frequencies[-1])
-        axes.set_ylim(bottom=0.0)
+        draw_spectrum(axes, zoom.frequencies, zoom.amplitude)
         room_above(axes, 0.22)
         pairs = zip((CIRCULAR_SPLINE, FLEXSPLINE), zoom.lines, zoom.line_amplitudes, ("right", "left"), strict=True)
         for look, frequency, amplitude, side in pairs:
             _mark(axes, look, frequency, amplitude, side, unit)
         axes.set_xlabel("frequency [Hz]")
         axes.set_ylabel(f"amplitude [{unit}]")
-        axes.set_title("\n".join(textwrap.wrap(title, _TITLE_WIDTH)))
+        axes.set_title("\n".join(textwrap.wrap(_with_fixed_numbers(title), _TITLE_WIDTH)))
         note = f"line pair k = {zoom.k}" + ("" if zoom.resolved else "; too short a record to part the two lines")
         text = f"{subtitle}   {note}" if subtitle else note
         axes.annotate(
@@ -58,8 +57,13 @@ def _mark(axes: Axes, look: Look, frequency: float, amplitude: float, side: str,
     axes.annotate(
         f"{look.label}\n{frequency:.2f} Hz\n{_short(amplitude)} {unit}",
         (frequency, amplitude), xytext=(frequency + beside, min(amplitude + 0.02 * top, 0.84 * top)),
-        ha=side, va="bottom", fontsize=10, color=look.colour, fontweight="bold", linespacing=1.25,
+        ha=side, va="bottom", fontsize=10, color=look.colour, fontweight="bold", linespacing=1.25, bbox=_PAPER,
     )  # fmt: skip
+
+
+def _with_fixed_numbers(title: str) -> str:
+    """Keep a number on one line with its uncertainty and its unit."""
+    return title.replace(" ± ", "\u00a0±\u00a0").replace(" %", "\u00a0%")
 
 
 def _short(value: float) -> str:

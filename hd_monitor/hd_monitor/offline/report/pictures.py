@@ -24,6 +24,8 @@ from .phase_trace import phase_trace
 from .spectra import amplitude_spectrum, order_spectrum
 
 _ORDERS_SHOWN = 1201
+_PARTING_TRAVEL = 360.0
+"""Output travel [°] that parts the first pair under a Hann window."""
 _FEWEST_SPEEDS = 3
 """Speeds from which on something is drawn over speed."""
 _UNITS = {"joint_effort": "effort, as reported", "joint_velocity": "rad/s"}
@@ -97,7 +99,10 @@ def _orders(last: Assessment, timeline: list[dict[str, Any]], collector: Collect
     axis = np.linspace(pair.circular_spline - margin, pair.flexspline + margin, _ORDERS_SHOWN)
     spectrum = order_spectrum(angle, values, axis)
     unit = unit_of(collector.settings["input.source"])
-    return order_plot(spectrum, pair, title=f"Order spectrum, line pair k = {k}", unit=unit)
+    travel = float(np.degrees(np.ptp(angle)))
+    # A Hann window parts lines that are two of its cycles apart; the pair is 2k cycles apart in a revolution.
+    note = "" if travel * k >= _PARTING_TRAVEL else f"{travel:.0f}° of travel do not part the lines"
+    return order_plot(spectrum, pair, title=f"Order spectrum, line pair k = {k}", unit=unit, note=note)
 
 
 def _spectrum(last: Assessment, timeline: list[dict[str, Any]], collector: Collector) -> Figure | None:
