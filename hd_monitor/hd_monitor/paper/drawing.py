@@ -6,6 +6,7 @@ from pathlib import Path
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.ticker import MultipleLocator
 
 from .exhibit import Curve, Exhibit, Mark, Panel, Surface
 
@@ -13,6 +14,7 @@ _WIDTH, _HEIGHT = 5.6, 3.8  # inches of a panel
 _DPI = 110
 _COLOURS = ("#1f5fa8", "#d1603d", "#3f8f5b", "#8a5aa8", "#7a6a3a", "#4f4f4f")
 _PER_ROW = 2
+_MOST_COLUMNS = 4  # of a legend
 
 
 def figure_of(exhibit: Exhibit) -> Figure:
@@ -63,6 +65,8 @@ def _draw(axes: Axes, panel: Panel, figure: Figure) -> None:
         axes.set_xlim(*panel.x_range)
     elif panel.surface is None and panel.curves and not panel.equal:
         axes.margins(x=0.02)
+    if panel.x_step is not None:
+        axes.xaxis.set_major_locator(MultipleLocator(panel.x_step))
     if panel.y_range is not None:
         axes.set_ylim(*panel.y_range)
     elif any(mark.axis == "x" for mark in panel.marks) and panel.surface is None:
@@ -71,8 +75,9 @@ def _draw(axes: Axes, panel: Panel, figure: Figure) -> None:
         axes.set_box_aspect(1.0)
     for mark in panel.marks:
         _draw_mark(axes, mark, on_surface=panel.surface is not None)
-    if any(curve.label for curve in panel.curves):
-        axes.legend(fontsize=8, frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.15), ncols=3)
+    if labels := sum(bool(curve.label) for curve in panel.curves):
+        columns = min(labels, _MOST_COLUMNS)
+        axes.legend(fontsize=8, frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.15), ncols=columns)
 
 
 def _draw_curve(axes: Axes, curve: Curve, colour: str) -> None:
@@ -102,7 +107,9 @@ def _draw_surface(axes: Axes, surface: Surface, figure: Figure) -> None:
         shading="gouraud",
         rasterized=True,
     )
-    figure.colorbar(image, ax=axes, label=surface.label)
+    bar = figure.colorbar(image, ax=axes)
+    bar.set_label(surface.label, fontsize=9)
+    bar.ax.tick_params(labelsize=8)
     if surface.values.min() < surface.level < surface.values.max():
         axes.contour(surface.x, surface.y, surface.values, levels=[surface.level], colors="black", linewidths=1.4)
 

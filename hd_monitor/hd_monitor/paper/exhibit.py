@@ -55,6 +55,8 @@ class Panel:
     marks: tuple[Mark, ...] = ()
     surface: Surface | None = None
     log_y: bool = False
+    x_step: float | None = None
+    """Distance of the ticks, where round numbers are not what one reads: degrees, say."""
     x_range: tuple[float, float] | None = None
     y_range: tuple[float, float] | None = None
     equal: bool = False

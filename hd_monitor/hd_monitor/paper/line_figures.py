@@ -37,7 +37,7 @@ def zoom_panel(
 ) -> Panel:
     """Draw the zoom spectrum around the k-th pair."""
     zoom = zoom_spectrum(
-        values, 1.0 / record.response.rate, around=model.reducer.line_frequencies(speed_rpm, k), k=k, bins=200
+        values, 1.0 / record.response.rate, around=model.reducer.line_frequencies(speed_rpm, k), k=k, bins=400
     )
     return Panel(
         title=f"Zoom, k = {k}",
@@ -177,7 +177,7 @@ def equation_5(cases: Cases) -> Exhibit:
     rows, worst = [], 0.0
     orders = case.model.reducer.output_orders
     speeds = np.unique([0.5 * case.speed, case.speed, cases["rig"].speed, 2.0 * cases["rig"].speed])
-    curves = []
+    curves, places, distances = [], list[float](), list[float]()
     for k in harmonics_of(case.model):
         measured = []
         for speed in speeds:
@@ -192,15 +192,24 @@ def equation_5(cases: Cases) -> Exhibit:
                 ", ".join(f"{d:.4f} Hz at {n:g} rpm" for d, n in zip(measured, speeds, strict=True)),
             )
         )
-        curves += [
-            Curve(x=speeds, y=np.asarray(measured), label="measured" if k == 1 else "", style="points"),
-            Curve(x=speeds, y=k * speeds / 30.0 * (z2_to_z1 - 1.0), label=f"eq. 5, k = {k}"),
-        ]
+        places.extend(speeds)
+        distances.extend(measured)
+        curves.append(Curve(x=speeds, y=k * speeds / 30.0 * (z2_to_z1 - 1.0), label=f"eq. 5, k = {k}"))
     return Exhibit(
         id="E5",
         title="Distance of the two lines of a bi-spectrum",
         caption="Peaks found in spectra of simulated vibration against Δf = k·n/30·(z2/z1 − 1).",
-        panels=(Panel(title="Equation 5", x_label="speed (rpm)", y_label="Δf (Hz)", curves=tuple(curves)),),
+        panels=(
+            Panel(
+                title="Equation 5",
+                x_label="wave-generator speed (rpm)",
+                y_label="Δf (Hz)",
+                curves=(
+                    *curves,
+                    Curve(x=np.asarray(places), y=np.asarray(distances), label="measured", style="points"),
+                ),
+            ),
+        ),
         claims=(
             Claim(
                 id="E5",

@@ -14,7 +14,7 @@ from .exhibit import Curve, Exhibit, Mark, Panel
 from .line_figures import REVOLUTIONS, zoom_panel
 from .property_figures import curve_panel, property_curve
 from .records import steady_record
-from .stiffness_figures import static_measurement, static_panel
+from .stiffness_figures import ANGLE_LABEL, static_measurement, static_panel
 
 HALF_TOLERANCE = 0.1
 """“One half” is taken as 0.5 ± this."""
@@ -159,7 +159,8 @@ def figure_19(cases: Cases) -> Exhibit:
     panels = [_pitch_panel(gear.errors, gear.tolerance, names[name], limit) for name, gear in gears.items()]
     interference = Panel(
         title="Interference over the lobe's position",
-        x_label="wave-generator angle (°)",
+        x_label=ANGLE_LABEL,
+        x_step=45.0,
         y_label="interference (µm)",
         curves=tuple(
             Curve(

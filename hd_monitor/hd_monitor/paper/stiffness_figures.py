@@ -83,6 +83,7 @@ def static_panel(case: Case, measured: StaticMeasurement, title: str) -> Panel:
         title=title,
         x_label=ANGLE_LABEL,
         y_label=STIFFNESS_LABEL,
+        x_step=60.0,
         curves=(
             Curve(
                 x=np.rad2deg(measured.angle), y=measured.stiffness, label="measured every "
@@ -107,6 +108,7 @@ def stiffness_panels(model: ParametricModel, revolutions: float = 2.0) -> tuple[
             title="One defect at a time",
             x_label=ANGLE_LABEL,
             y_label=STIFFNESS_LABEL,
+            x_step=90.0,
             curves=(
                 Curve(x=degrees, y=near.flexspline, label="flexspline defect"),
                 Curve(x=degrees, y=near.circular_spline, label="circular spline defect", style="dashed"),

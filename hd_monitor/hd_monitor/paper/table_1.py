@@ -16,7 +16,7 @@ def table_1(cases: Cases) -> Exhibit:
     case = cases["table_1"]
     assessment = diagnose(case, case.speed)
     found = assessment.identification
-    claims, curves = [], []
+    claims, curves, places, indexes = [], [], list[float](), list[float]()
     for row, (name, values) in enumerate(printed.TABLE_1.items(), start=1):
         phasors = np.zeros(0) if found is None else getattr(found, name)
         measured = np.abs(phasors)[: len(values)]
@@ -39,7 +39,9 @@ def table_1(cases: Cases) -> Exhibit:
             Curve(x=k + shift, y=np.asarray(values), label=f"{name.replace('_', ' ')}, printed", style="stems")
         )
         if measured.size == len(values):
-            curves.append(Curve(x=k + shift, y=measured, label=f"{name.replace('_', ' ')}, identified", style="points"))
+            places.extend(k + shift)
+            indexes.extend(measured)
+    identified = Curve(x=np.asarray(places), y=np.asarray(indexes), label="identified", style="points")
     return Exhibit(
         id="T1",
         title="Index values of the stiffness fluctuation",
@@ -49,7 +51,8 @@ def table_1(cases: Cases) -> Exhibit:
                 title="Table 1",
                 x_label="harmonic",
                 y_label="index β",
-                curves=tuple(curves),
+                curves=(*curves, identified),
+                x_step=1.0,
                 x_range=(0.5, 3.5),
                 y_range=(0.0, 0.075),
             ),
