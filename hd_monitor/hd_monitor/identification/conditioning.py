@@ -23,7 +23,7 @@ PASS_BAND = 0.36
 """Part of the reduced sampling rate up to which the anti-aliasing filter passes everything (to 0.1 %)."""
 
 _TAPS = 32  # of the anti-aliasing filter, per factor of reduction
-_LOSS, _LOSS_DEAR = 0.03, 0.12  # part of the samples that reducing the rate may cost, by a little or much
+_LOSS, _LOSS_DEAR = 0.04, 0.12  # part of the samples that reducing the rate may cost, by a little or much
 _WORTH_MUCH = 4  # factor of reduction
 _BRIDGED = 2  # samples missing in a row that interpolation replaces before the rate is reduced
 
