@@ -14,6 +14,7 @@ from rclpy.qos import QoSProfile
 from hd_monitor.errors import HdMonitorError
 from hd_monitor.ros.declaration import answer, declare, describe
 from hd_monitor.ros.managed_node import ManagedNode, logged, run
+from hd_monitor.ros.queue import queue_depth
 
 from .node_parameters import NODE_PARAMETERS
 from .parameters import CHANGEABLE, PARAMETERS
@@ -124,7 +125,7 @@ class HdSimNode(ManagedNode):
         seconds = self.get_parameter("queue_seconds").value
         for topic in self._simulation.topics:
             writer = WRITERS[topic](settings)
-            depth = max(10, round(seconds * scale * self._simulation.message_rate(topic)))
+            depth = queue_depth(scale * self._simulation.message_rate(topic), seconds)
             self._writers[topic] = writer
             self._outlets[topic] = self.create_lifecycle_publisher(writer.message_type, topic, QoSProfile(depth=depth))
         return super().on_configure(state)

@@ -26,7 +26,7 @@ NODE_PARAMETERS: tuple[Parameter, ...] = (
         unit="s",
         low=0.1,
         high=60.0,
-        description="depth of the publishers' queues, in seconds of real time",
+        description="depth of the publishers' queues, in seconds of real time; Fast DDS keeps 5000 messages",
     ),
 )
 """Parameters of the node beside the rig's."""

@@ -1,6 +1,5 @@
 """One joint's topics: its vibration subscription, its publishers, and the watch between them."""
 
-import math
 from collections.abc import Sequence
 
 from rclpy.lifecycle import LifecycleNode, LifecyclePublisher
@@ -12,14 +11,13 @@ from ..adapters import VIBRATION_SOURCES, Source
 from ..settings import JointSettings
 from .joint_watch import VIBRATION, Explain, JointWatch
 from .messages import rms_message, zoom_message
+from .queue import most_messages, queue_depth
 from .subscriptions import DrainedSubscription
 
 
-def queue_depth(settings: JointSettings) -> int:
+def queue_depth_of(settings: JointSettings) -> int:
     """Messages that the queues of a joint's inputs hold."""
-    rate: float = settings["input.expected_rate"]
-    seconds: float = settings["input.queue_seconds"]
-    return max(10, math.ceil(rate * seconds))
+    return queue_depth(settings["input.expected_rate"], settings["input.queue_seconds"])
 
 
 class JointChannel:
@@ -73,15 +71,26 @@ class JointChannel:
 
     def open(self, now: int) -> None:
         """Subscribe; silence counts from `now` [ns]."""
+        self._warn_of_short_queue()
         source = self._source
         if source is not None:
             self._vibration = DrainedSubscription(
                 self._node,
                 source,
-                depth=queue_depth(self.settings),
+                depth=queue_depth_of(self.settings),
                 reliability=self.settings["input.reliability"],
             )
         self.watch.wake(now)
+
+    def _warn_of_short_queue(self) -> None:
+        rate, seconds = self.settings["input.expected_rate"], self.settings["input.queue_seconds"]
+        most = most_messages()
+        if rate * seconds > most:
+            self._node.get_logger().warning(
+                f"{self.joint}: input.queue_seconds = {seconds:g} s at input.expected_rate = {rate:g} Hz are more than "
+                f"the {most:g} messages that Fast DDS keeps: the queues hold {most / rate:.3g} s; ask for less, or "
+                "send blocks instead of single samples"
+            )
 
     def close(self) -> None:
         """Leave the topics."""

@@ -14,7 +14,7 @@ from ..diagnosis.status import Status
 from ..diagnosis.verdict import Level
 from ..errors import HdMonitorError
 from ..settings import JointSettings
-from .joint_channel import JointChannel, queue_depth
+from .joint_channel import JointChannel, queue_depth_of
 from .joint_watch import MOTION
 from .managed_node import ManagedNode, logged, run
 from .messages import diagnostic_array, diagnostic_status
@@ -86,7 +86,7 @@ class HdMonitorNode(ManagedNode):
         self._motion = DrainedSubscription(
             self,
             MOTION_SOURCE,
-            depth=max(map(queue_depth, settings)),
+            depth=max(map(queue_depth_of, settings)),
             reliability="reliable" if reliable else "best_effort",
         )
         for channel in self._channels:

@@ -84,11 +84,11 @@ PARAMETERS: tuple[Parameter, ...] = (
     ),
     Parameter(
         name="input.queue_seconds",
-        default=20.0,
+        default=5.0,
         unit="s",
         low=0.1,
         high=60.0,
-        description="depth of the subscription queues, in seconds of the expected rate",
+        description="depth of the subscription queues, in seconds of the expected rate; Fast DDS keeps 5000 messages",
     ),
     Parameter(
         name="input.expected_rate",
@@ -96,7 +96,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         unit="Hz",
         low=1.0,
         high=100_000.0,
-        description="expected rate of the vibration messages, for the depth of their queue",
+        description="expected rate of the messages of the fastest input, for the depth of the queues",
     ),
     Parameter(
         name="input.reliability",

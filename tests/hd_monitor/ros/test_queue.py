@@ -1,0 +1,62 @@
+"""Queues: as deep as asked for, and no deeper than the middleware bears."""
+
+from typing import Any
+
+import pytest
+
+from hd_monitor.adapters import Source
+
+pytestmark = pytest.mark.ros
+
+
+def test_a_queue_holds_the_seconds_asked_for_and_a_few_messages_at_least() -> None:
+    from hd_monitor.ros.queue import queue_depth
+
+    assert queue_depth(200.0, 2.5) == 500
+    assert queue_depth(1.0, 0.1) == 10
+
+
+def test_without_a_known_limit_a_queue_is_as_deep_as_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    import rclpy
+
+    from hd_monitor.ros.queue import queue_depth
+
+    monkeypatch.setattr(rclpy, "get_rmw_implementation_identifier", lambda: "rmw_cyclonedds_cpp")
+    assert queue_depth(1000.0, 20.0) == 20_000
+
+
+def test_the_deepest_queue_still_drops_the_oldest_message_and_not_the_newest(peer: Any) -> None:
+    from std_msgs.msg import Float64MultiArray
+
+    from hd_monitor.cdr import decode_multi_arrays
+    from hd_monitor.ros.queue import most_messages, queue_depth
+    from hd_monitor.ros.subscriptions import DrainedSubscription
+
+    depth = queue_depth(1000.0, 60.0)
+    if depth != most_messages():
+        pytest.skip("this middleware knows no limit")
+    subscription = DrainedSubscription(
+        peer.node, Source("numbers", "std_msgs/Float64MultiArray"), depth=depth, reliability="reliable"
+    )
+    publisher = peer.publisher(Float64MultiArray, "numbers")
+    sent = depth + 500
+    for number in range(sent):
+        publisher.publish(Float64MultiArray(data=[float(number)]))
+    received: list[bytes] = []
+
+    def newest() -> float:
+        received.extend(subscription.drain())
+        groups, _ = decode_multi_arrays(received[-1:])
+        return float(groups[0].data[0, 0]) if groups else -1.0
+
+    peer.until(lambda: newest() == sent - 1, "the newest message")
+
+
+def test_the_node_warns_of_a_queue_that_cannot_be_so_deep(start_module: Any, peer: Any) -> None:
+    from hd_monitor.ros.queue import most_messages
+
+    node = start_module("hd_monitor.ros.node", "--ros-args", "-p", "input.queue_seconds:=60.0")
+    peer.until(lambda: "watching joint" in node.output, "the node")
+    warned = "the queues hold 5 s; ask for less" in node.output
+    assert warned == (most_messages() < 60_000)
+    assert node.interrupt() == 0
