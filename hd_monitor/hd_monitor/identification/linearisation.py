@@ -9,7 +9,8 @@ import numpy.typing as npt
 from ..interpolation import hermite
 from ..model.oscillator import GAUSS_OFFSETS, Oscillator
 from ..model.parameters import Dynamics
-from .stretch import Path, Stretch
+from .path import Path
+from .stretch import Stretch
 from .unknowns import Unknowns
 
 FloatArray = npt.NDArray[np.float64]

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
@@ -11,11 +11,11 @@ from scipy import fft
 
 from ..acquisition.record import Record
 from ..errors import ParameterError
-from ..interpolation import hermite, linear
 from ..model.oscillator import GAUSS_OFFSETS
 from ..reducer import Reducer
 from .conditioning import condition
 from .drive import own_acceleration, smooth_torque
+from .path import Motion, Path, path_along
 from .tones import foreign_tones, tone_columns
 
 FloatArray = npt.NDArray[np.float64]
@@ -31,46 +31,6 @@ LARGEST_PHASE_STEP = 1.0
 """Phase [rad] of the natural oscillation and of the fastest stiffness harmonic that an integration step may cover."""
 
 _SIDE_ORDERS = 4.0  # orders above the highest line at which load fluctuations may still put side lines
-
-
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Path:
-    """What the model needs to know along the motion, at some set of instants of shape `S`.
-
-    Attributes
-    ----------
-    lines : ndarray, shape S + (4 * harmonics,)
-        cos and -sin of every harmonic's angle, in the order of the unknowns: times β they give the stiffness.
-    rates : ndarray, shape (4 * harmonics,)
-        Orders of these angles, cycles per output revolution.
-    loads : ndarray, shape S + (2 * load orders,)
-        cos and -sin of the load angles.
-    torque : ndarray, shape S
-        Known torque [N·m].
-    speed, acceleration : ndarray, shape S
-        Output speed [rad/s] and its derivative [rad/s²].
-    """
-
-    lines: FloatArray
-    rates: FloatArray
-    loads: FloatArray
-    torque: FloatArray
-    speed: FloatArray
-    acceleration: FloatArray
-
-    def lines_after(self, delay: float) -> FloatArray:
-        """Return `lines` at the angle that the output has `delay` [s] later."""
-        if delay == 0.0:
-            return self.lines
-        shift = np.multiply.outer(self.speed * delay, self.rates)
-        cosine, other = self.quadrature(self.lines)
-        return np.asarray(np.cos(shift) * self.lines + np.sin(shift) * np.where(cosine, other, -other))
-
-    def quadrature(self, lines: FloatArray) -> tuple[BoolArray, FloatArray]:
-        """Mark the columns that hold cosines, and return the columns with cos and -sin of each angle exchanged."""
-        harmonics = self.rates.size // 4
-        swapped = lines.reshape(*lines.shape[:-1], 2, 2, harmonics)[..., ::-1, :].reshape(lines.shape)
-        return np.tile(np.repeat([True, False], harmonics), 2), swapped
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -227,7 +187,8 @@ class StretchBuilder:
         gauss = np.stack([nodes[:-1] + c / steps for c in GAUSS_OFFSETS])
         own = own_acceleration(speed, step)
         known = np.full(angle.size, torque) if torque is not None else smooth_torque(measured, angle, speed, own, step)
-        motion = _Motion(angle, speed, own, known, step)
+        motion = Motion(angle, speed, own, known, step)
+        along = partial(path_along, motion, self.reducer, self.harmonics, self.load_orders)
         return Stretch(
             start=records[0].start + signal.first * period,
             period=step,
@@ -236,8 +197,8 @@ class StretchBuilder:
             angle=angle,
             speed=speed,
             substeps=steps,
-            at_steps=self._path(motion, nodes),
-            at_gauss=self._path(motion, gauss),
+            at_steps=along(nodes),
+            at_gauss=along(gauss),
             slow=self._slow(motion, signal.values, signal.used),
             highest_frequency=signal.highest_frequency,
             raw_highest=0.5 / period,
@@ -249,29 +210,7 @@ class StretchBuilder:
         fastest = math.tau * max(FREQUENCY_MARGIN * self.natural_frequency, 0.7 * line)
         return max(1, math.ceil(fastest * step / LARGEST_PHASE_STEP))
 
-    def _path(self, motion: "_Motion", places: FloatArray) -> Path:
-        q = _hermite(motion.angle, motion.speed * motion.step, places)
-        lines = np.empty((*q.shape, 4 * self.harmonics))
-        rates = np.empty(4 * self.harmonics)
-        for spline, order in enumerate(self.reducer.output_orders):
-            unit = np.exp(1j * order * q)
-            power = unit
-            for k in range(self.harmonics):
-                real = 2 * self.harmonics * spline + k
-                lines[..., real], rates[real] = power.real, (k + 1) * order
-                lines[..., real + self.harmonics], rates[real + self.harmonics] = -power.imag, (k + 1) * order
-                power = power * unit
-        phases = np.multiply.outer(q, np.asarray(self.load_orders, dtype=np.float64))
-        return Path(
-            lines=lines,
-            rates=rates,
-            loads=np.concatenate([np.cos(phases), -np.sin(phases)], axis=-1),
-            torque=_linear(motion.torque, places),
-            speed=_linear(motion.speed, places),
-            acceleration=_linear(motion.acceleration, places),
-        )
-
-    def _slow(self, motion: "_Motion", values: FloatArray, used: BoolArray) -> FloatArray:
+    def _slow(self, motion: Motion, values: FloatArray, used: BoolArray) -> FloatArray:
         """Directions below about 1 Hz, the joint's own acceleration, foreign tones; for an inertial sensor gravity."""
         size = motion.angle.size
         degree = _slow_degree(size * motion.step)
@@ -289,7 +228,7 @@ class StretchBuilder:
         kept = squares > 1e-10 * squares[-1]
         return np.asarray(columns @ (directions[:, kept] / np.sqrt(squares[kept])))
 
-    def _own_lines(self, motion: "_Motion") -> tuple[FloatArray, float]:
+    def _own_lines(self, motion: Motion) -> tuple[FloatArray, float]:
         """Frequencies [Hz] between which every group of lines is, and how far its side lines reach beyond."""
         speed = np.abs(motion.speed)
         low, high = float(speed.min()) / math.tau, float(speed.max()) / math.tau
@@ -297,16 +236,6 @@ class StretchBuilder:
         groups = range(1, 2 * self.harmonics + 3)  # the coupling of the splines makes lines beyond the harmonics, too
         own = [(k * lowest * low, k * highest * high) for k in groups]
         return np.asarray(own), _SIDE_ORDERS * high
-
-
-class _Motion(NamedTuple):
-    """The motion at the samples: output angle, speed and acceleration, known torque, and the sample period."""
-
-    angle: FloatArray
-    speed: FloatArray
-    acceleration: FloatArray
-    torque: FloatArray
-    step: float
 
 
 def _slow_degree(duration: float) -> int:
@@ -320,14 +249,3 @@ def _common_period(records: Sequence[Record]) -> float:
     if len(records) == 1:
         return first.period
     return (last.start - first.start) / sum(len(record) for record in records[:-1])
-
-
-def _hermite(values: FloatArray, slopes: FloatArray, places: FloatArray) -> FloatArray:
-    """Cubic Hermite interpolation on a unit grid; `slopes` are per grid step."""
-    left = np.minimum(places.astype(np.intp), values.size - 2)
-    return hermite(values[left], values[left + 1], slopes[left], slopes[left + 1], places - left)
-
-
-def _linear(values: FloatArray, places: FloatArray) -> FloatArray:
-    left = np.minimum(places.astype(np.intp), values.size - 2)
-    return linear(values[left], values[left + 1], places - left)
