@@ -22,6 +22,8 @@ from .noise_floor import NoiseFloor
 from .refinement import Score, score
 from .result import Identification
 from .stretch import Stretch, StretchBuilder
+from .tooth_trial import ToothTrial
+from .tooth_watch import ToothWatch
 from .unknowns import Unknowns
 
 FloatArray = npt.NDArray[np.float64]
@@ -96,6 +98,7 @@ class Estimation:
         self._line_residual = LineResidual.empty(u.harmonics)
         self._explored = 0.0
         self._coverage = Coverage()
+        self._teeth = ToothWatch()
         self._conclusions = Conclusions(settings, u)
         self.result: Identification | None = None
         self.seconds = 0.0
@@ -144,6 +147,7 @@ class Estimation:
             floor, rest = self._rest(fit)
         self._values, self._floor, self._line_residual = fit.values, floor, rest
         self._learnt = self._learnt.plus(fit.equations, fit.values)
+        self._question_teeth(fit)
         self._conclude(fit)
         self.age(sum(item.stretch.duration for item in fit.evidence))
 
@@ -302,6 +306,28 @@ class Estimation:
             fit = self._problem(stretches, self._prior + self._learnt).solve(fit.values, rounds=_ROUNDS)
         return fit
 
+    def _question_teeth(self, fit: Fit) -> None:
+        """Ask whether other tooth numbers than those given explain the recent motion better."""
+        assert self._predictor is not None
+        trial = ToothTrial(
+            stretches=self._recent,
+            given=self._given,
+            unknowns=self._unknowns,
+            active=self._active,
+            prior=self._prior,
+            reference_torque=self._predictor.reference_torque,
+            values=fit.values,
+            load_starts=(0.0, *_START_LOADS[::2]),
+            inertial=self._builder.inertial,
+        )
+        self._teeth = self._teeth.after(fit, self._given, anew=self._fitted_anew == self.seconds).look(
+            trial.leads,
+            self._reducer,
+            self._unknowns.harmonics,
+            seconds=self.seconds,
+            one_speed=not self._coverage.speed_varies,
+        )
+
     def _score(self, place: int, knowledge: Knowledge, values: FloatArray) -> Score:
         return score(place, knowledge, values, self._active, float(self._std[place]))
 
@@ -322,6 +348,7 @@ class Estimation:
         keep = math.exp(-duration / self._memory)
         self._learnt = self._learnt.faded(keep)
         self._line_residual = self._line_residual.faded(keep)
+        self._teeth = self._teeth.faded(keep)
         if self._floor is not None:
             self._floor = self._floor.faded(keep)
 
@@ -343,6 +370,8 @@ class Estimation:
             floor=self._floor or fit.floor,
             relative=self._nominal_torque is not None,
         )
+        if blocker := self._teeth.blocker(self._reducer):
+            self.result = replace(self.result, blockers=(blocker, *self.result.blockers))
 
 
 def _given_std(unknowns: Unknowns) -> FloatArray:
