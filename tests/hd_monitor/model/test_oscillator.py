@@ -1,6 +1,7 @@
 """The Magnus-4 scan: its order, its identities, and what it refuses."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -78,17 +79,18 @@ def test_a_constant_force_at_its_deflection_stays_there():
     np.testing.assert_allclose(response.velocity, 0.0, atol=1e-10)
 
 
-@given(st.integers(1, 90), st.integers(0, 2**31))
-def test_is_the_chain_of_its_own_steps(steps, seed):
-    """The blocked scan does the arithmetic of a loop over steps, whatever their number."""
+@given(st.integers(1, 90), st.integers(0, 2**31), st.sampled_from([0.0, 0.02, 0.7, 3.0]))
+def test_is_the_chain_of_its_own_steps(steps, seed, damping):
+    """The sums over blocks do the arithmetic of a loop over steps, whatever their number and however damped."""
     rng = np.random.default_rng(seed)
-    k, u = rng.uniform(-0.3, 0.3, (2, steps)), rng.normal(size=(2, steps))
+    k, u = rng.uniform(-0.9, 0.9, (2, steps)), rng.normal(size=(2, steps))
     h = rng.uniform(1e-3, 0.02, steps)
-    whole = Oscillator(DYNAMICS, k, h).respond(u, START)
+    dynamics = replace(DYNAMICS, damping_ratio=damping)
+    whole = Oscillator(dynamics, k, h).respond(u, START)
     state = np.array(START)
     chained = [state]
     for n in range(steps):
-        one = Oscillator(DYNAMICS, k[:, n : n + 1], h[n]).respond(u[:, n : n + 1], state)
+        one = Oscillator(dynamics, k[:, n : n + 1], h[n]).respond(u[:, n : n + 1], state)
         state = np.array([one.displacement[-1], one.velocity[-1]])
         chained.append(state)
     np.testing.assert_allclose(np.stack([whole.displacement, whole.velocity], axis=1), chained, rtol=1e-10, atol=1e-12)
