@@ -23,6 +23,9 @@ LARGEST_FLUCTUATION = 0.8
 CONVERGED = 0.05
 """Size of a step, in standard deviations of the unknowns, below which the fit stands."""
 
+NEGLIGIBLE = 0.1
+"""Standard deviations that a step may miss its end by for being taken along a straight line."""
+
 _HALVINGS = 5
 _TRIAL_ROUNDS = 3  # after which the best of several starts go on
 _FINALISTS = 2
@@ -45,6 +48,8 @@ class Fit:
         The next step.
     step_size : float
         Its size in standard deviations of the unknowns.
+    covariance : ndarray, shape (unknowns, unknowns)
+        Of the unknowns fitted, by the information of the stretches and the prior; 0 for the others.
     """
 
     values: FloatArray
@@ -53,13 +58,14 @@ class Fit:
     cost: float
     step: FloatArray
     step_size: float
+    covariance: FloatArray
 
     @property
     def floor(self) -> NoiseFloor:
         """Noise floor of what the fit leaves."""
         floor = NoiseFloor()
         for item in self.evidence:
-            floor = floor.updated(item.stretch, item.residual, unknowns=self.values.size / len(self.evidence))
+            floor = floor.updated(item.stretch, item.residual, item.leverage(self.covariance))
         return floor
 
 
@@ -94,6 +100,8 @@ class Problem:
         step = np.zeros(values.size)
         inner = information[np.ix_(self.active, self.active)]
         step[self.active] = np.linalg.lstsq(inner, right[self.active], rcond=1e-13)[0]
+        covariance = np.zeros(information.shape)
+        covariance[np.ix_(self.active, self.active)] = np.linalg.pinv(inner, rcond=1e-13, hermitian=True)
         return Fit(
             values=values,
             evidence=evidence,
@@ -101,6 +109,7 @@ class Problem:
             cost=equations.cost + self.prior.cost(values),
             step=step,
             step_size=math.sqrt(max(float(step @ information @ step), 0.0)),
+            covariance=covariance,
         )
 
     def solve(self, start: FloatArray, *, rounds: int) -> Fit:
@@ -109,7 +118,7 @@ class Problem:
         for _ in range(rounds):
             if fit.step_size < CONVERGED:
                 break
-            if self._curvature(fit) < CONVERGED:
+            if self._curvature(fit) < NEGLIGIBLE:
                 return self._moved(fit)
             step = fit.step * self._room(fit.values, fit.step)
             for _ in range(_HALVINGS):
@@ -124,8 +133,15 @@ class Problem:
 
     def _curvature(self, fit: Fit) -> float:
         """Size of what the model is beyond linear over the next step, in standard deviations of the unknowns."""
-        effect = np.abs(fit.step) * np.sqrt((fit.equations.information + self.prior.information).diagonal())
-        return float(effect @ (np.abs(fit.step) / _linear_range(self.predictor.unknowns)))
+        unknowns = self.predictor.unknowns
+        part = np.abs(fit.step) / _linear_range(unknowns)
+        forces = unknowns.mask(unknowns.load, unknowns.torque, unknowns.inertia)
+        information = fit.equations.information + self.prior.information
+        forced, rest = (
+            math.sqrt(max(float(step @ information @ step), 0.0)) for step in (fit.step * forces, fit.step * ~forces)
+        )
+        # The prediction is linear in the forces: they bend it together with the other unknowns only
+        return (forced + rest) * float(part[~forces].max()) + rest * float(part[forces].max())
 
     def _moved(self, fit: Fit) -> Fit:
         """Return the fit after its next step, which is so small that evaluating the model there adds nothing."""
@@ -138,6 +154,7 @@ class Problem:
             cost=equations.cost + self.prior.cost(values),
             step=np.zeros(values.size),
             step_size=0.0,
+            covariance=fit.covariance,
         )
 
     def explore(self, starts: Sequence[FloatArray], *, rounds: int) -> tuple["Problem", Fit]:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hd_monitor.acquisition.record import Record
-from hd_monitor.identification.gauss_newton import CONVERGED, Problem
+from hd_monitor.identification.gauss_newton import NEGLIGIBLE, Problem
 from hd_monitor.identification.knowledge import Knowledge
 from hd_monitor.identification.linearisation import Predictor
 from hd_monitor.identification.noise_floor import NoiseFloor
@@ -72,7 +72,7 @@ def test_the_truth_is_reached_within_its_uncertainty(fitted):
 def test_the_last_step_leads_where_a_simulation_says(fitted):
     task, fit = fitted
     there = task.at(fit.values)
-    assert there.step_size < 2.0 * CONVERGED
+    assert there.step_size < NEGLIGIBLE
     assert fit.cost == pytest.approx(there.cost, rel=1e-4)
     for moved, simulated in zip(fit.evidence, there.evidence, strict=True):
         scale = np.linalg.norm(simulated.residual)
@@ -83,7 +83,7 @@ def test_a_small_step_costs_a_single_simulation(fitted, monkeypatch):
     """Knowledge that is good already: the newest stretch is evaluated once."""
     _, fit = fitted
     knowledge = Knowledge.none(UNKNOWNS.size).plus(fit.equations, fit.values)
-    task = problem(stretch(3), prior=knowledge)
+    task = problem(stretch(3, seconds=0.5), prior=knowledge)
     simulated = []
     original = Predictor.linearise
     monkeypatch.setattr(
