@@ -3,24 +3,13 @@
 from typing import Any
 
 import pytest
+from tests.managed import change_state, set_parameter, state
 
 from .conftest import Bench, Feeder
 
 pytestmark = pytest.mark.ros
 
-
-def change(peer: Any, label: str) -> bool:
-    from lifecycle_msgs.msg import Transition
-    from lifecycle_msgs.srv import ChangeState
-
-    request = ChangeState.Request(transition=Transition(label=label))
-    return bool(peer.call(ChangeState, "hd_monitor_node/change_state", request).success)
-
-
-def state(peer: Any) -> str:
-    from lifecycle_msgs.srv import GetState
-
-    return str(peer.call(GetState, "hd_monitor_node/get_state", GetState.Request()).current_state.label)
+NODE = "hd_monitor_node"
 
 
 def trigger(peer: Any, service: str) -> Any:
@@ -39,17 +28,17 @@ def feed_until(bench: Bench, feeder: Feeder, samples: int) -> None:
 
 def test_comes_up_active(bench: Bench, peer: Any) -> None:
     bench.monitor()
-    assert state(peer) == "active"
+    assert state(peer, NODE) == "active"
 
 
 def test_inactive_is_silent_and_active_goes_on(bench: Bench, peer: Any, feeder: Feeder) -> None:
     bench.monitor()
     feed_until(bench, feeder, 1000)
-    assert change(peer, "deactivate")
-    assert state(peer) == "inactive"
+    assert change_state(peer, NODE, "deactivate")
+    assert state(peer, NODE) == "inactive"
     bench.until(lambda: not feeder.blocks.get_subscription_count(), "the end of the subscription")
     bench.forget()
-    assert change(peer, "activate")
+    assert change_state(peer, NODE, "activate")
     status = bench.until_status(lambda s: True, "a status after the activation")
     assert status.number("samples") >= 1000
     feed_until(bench, feeder, int(status.number("samples")) + 1000)
@@ -58,11 +47,11 @@ def test_inactive_is_silent_and_active_goes_on(bench: Bench, peer: Any, feeder: 
 def test_nothing_is_published_while_inactive(bench: Bench, peer: Any) -> None:
     bench.monitor()
     bench.until(lambda: bench.statuses, "a status")
-    assert change(peer, "deactivate")
+    assert change_state(peer, NODE, "deactivate")
     bench.forget()
     # An answer of the node comes behind whatever it had published before.
     for _ in range(3):
-        assert state(peer) == "inactive"
+        assert state(peer, NODE) == "inactive"
     assert not bench.statuses
 
 
@@ -70,27 +59,27 @@ def test_cleanup_drops_the_evidence(bench: Bench, peer: Any, feeder: Feeder) -> 
     bench.monitor()
     feed_until(bench, feeder, 1000)
     for label in ("deactivate", "cleanup"):
-        assert change(peer, label)
-    assert state(peer) == "unconfigured"
+        assert change_state(peer, NODE, label)
+    assert state(peer, NODE) == "unconfigured"
     bench.forget()
     for label in ("configure", "activate"):
-        assert change(peer, label)
+        assert change_state(peer, NODE, label)
     assert bench.until_status(lambda s: True, "a status").number("samples") == 0
 
 
 def test_without_autostart_it_waits_for_its_manager(bench: Bench, peer: Any) -> None:
     bench.monitor("autostart:=false")
-    assert state(peer) == "unconfigured"
+    assert state(peer, NODE) == "unconfigured"
     for label in ("configure", "activate"):
-        assert change(peer, label)
+        assert change_state(peer, NODE, label)
     bench.until(lambda: bench.statuses, "a status")
 
 
 def test_shutdown_from_active(bench: Bench, peer: Any) -> None:
     bench.monitor()
-    assert state(peer) == "active"
-    assert change(peer, "shutdown")
-    assert state(peer) == "finalized"
+    assert state(peer, NODE) == "active"
+    assert change_state(peer, NODE, "shutdown")
+    assert state(peer, NODE) == "finalized"
 
 
 def test_ctrl_c_ends_it_with_status_0(bench: Bench) -> None:
@@ -115,17 +104,13 @@ def test_reset_forgets_the_evidence(bench: Bench, peer: Any) -> None:
 
 
 def test_latch_holds_until_it_is_reset(bench: Bench, peer: Any) -> None:
-    from rcl_interfaces.srv import SetParameters
-    from rclpy.parameter import Parameter
-
     from .conftest import QUICK
     from .test_verdicts import settled
 
     bench.monitor("diagnosis.latch:=true", "analysis.memory:=5.0")
     bench.rig("defect:=flexspline", *QUICK)
     bench.until_status(settled, "a settled verdict")
-    request = SetParameters.Request(parameters=[Parameter("defect", value="none").to_parameter_msg()])
-    assert peer.call(SetParameters, "hd_sim_node/set_parameters", request).results[0].successful
+    assert set_parameter(peer, "hd_sim_node", "defect", "none").successful
     held = bench.until_status(
         lambda s: s.message.startswith("latched: ") and "now: Both splines are sound" in s.message,
         "a latched verdict beside a sound reducer",

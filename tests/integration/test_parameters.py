@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tests.managed import set_parameter
 
 from hd_monitor.settings import PARAMETERS
 
@@ -65,18 +66,10 @@ def test_a_shared_file_may_hold_what_belongs_to_other_nodes(bench: Bench, start_
     assert "ignoring defect, sensor.rate" in process.output
 
 
-def call_set(peer: Any, name: str, value: Any) -> Any:
-    from rcl_interfaces.srv import SetParameters
-    from rclpy.parameter import Parameter
-
-    request = SetParameters.Request(parameters=[Parameter(name, value=value).to_parameter_msg()])
-    return peer.call(SetParameters, "hd_monitor_node/set_parameters", request).results[0]
-
-
 def test_limits_change_at_run_time(bench: Bench, peer: Any, feeder: Feeder) -> None:
     bench.monitor("diagnosis.error_index:=0.2")
     bench.until(feeder.matched, "the monitor's subscriptions")
-    result = call_set(peer, "diagnosis.warn_index", 0.12)
+    result = set_parameter(peer, "hd_monitor_node", "diagnosis.warn_index", 0.12)
     assert result.successful, result.reason
 
     def in_force() -> bool:
@@ -100,7 +93,7 @@ def test_what_cannot_be_is_rejected_with_the_reason(
     bench: Bench, peer: Any, name: str, value: Any, reason: str
 ) -> None:
     bench.monitor()
-    result = call_set(peer, name, value)
+    result = set_parameter(peer, "hd_monitor_node", name, value)
     assert not result.successful
     assert reason in result.reason.lower()
     bench.until(lambda: bench.statuses, "a status: the node lives on")
@@ -135,8 +128,8 @@ def test_with_several_joints_each_has_its_own(bench: Bench, peer: Any) -> None:
     names = ["load.torque", "a.load.torque", "b.load.torque"]
     response = peer.call(GetParameters, "hd_monitor_node/get_parameters", GetParameters.Request(names=names))
     assert [value.double_value for value in response.values] == [7.0, 7.0, 3.0]
-    assert call_set(peer, "b.diagnosis.warn_index", 0.03).successful
-    assert "read-only" in call_set(peer, "diagnosis.warn_index", 0.03).reason
+    assert set_parameter(peer, "hd_monitor_node", "b.diagnosis.warn_index", 0.03).successful
+    assert "read-only" in set_parameter(peer, "hd_monitor_node", "diagnosis.warn_index", 0.03).reason
 
 
 def test_a_whole_number_will_do_for_a_real_one(bench: Bench) -> None:
