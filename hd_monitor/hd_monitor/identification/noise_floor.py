@@ -16,6 +16,7 @@ EDGES.flags.writeable = False
 
 _CENTRES = np.concatenate([[0.5], np.sqrt(EDGES[1:-1] * EDGES[2:])])
 _FREEDOM = 60.0  # degrees of freedom that a band needs to stand alone; neighbours are pooled below that
+_LEAST_SHARE = 0.1  # of the rows' noise that a fit leaves
 _LOWEST_DENSITY = 1e-20  # of the whole power: noise-free data have a floor all the same
 
 
@@ -40,24 +41,26 @@ class NoiseFloor:
         known = np.full(_CENTRES.size, 1e9)
         return cls(power=density * known, freedom=known)
 
-    def updated(self, stretch: Stretch, residual: FloatArray, *, unknowns: float = 0.0) -> "NoiseFloor":
-        """Add a stretch's residual, given as its transform, shape (2 * bins,).
+    def updated(self, stretch: Stretch, residual: FloatArray, leverage: FloatArray) -> "NoiseFloor":
+        """Add a stretch's residual, given as its transform.
 
         Parameters
         ----------
         stretch : Stretch
-        residual : ndarray
-        unknowns : float
-            Number of unknowns that were fitted to it, by which its power is too small.
+        residual : ndarray, shape (2 * bins,)
+        leverage : ndarray, shape (2 * bins,)
+            Part of the noise's variance in every row that a fit took away: without it the floor would be too low just
+            where it matters, at the lines.
         """
         frequencies, fill = stretch.frequencies, stretch.fill
         bins = frequencies.size
         place = np.searchsorted(EDGES[1:-1], frequencies)
         squares = 2.0 * stretch.period * (residual[:bins] ** 2 + residual[bins:] ** 2)
-        share = max(1.0 - unknowns / max(2.0 * bins * fill, 1.0), 0.1)
+        rows = 2.0 * fill * np.bincount(place, minlength=self.power.size)
+        taken = np.bincount(place, leverage[:bins] + leverage[bins:], self.power.size)
         return NoiseFloor(
             power=self.power + np.bincount(place, squares, self.power.size),
-            freedom=self.freedom + 2.0 * fill * share * np.bincount(place, minlength=self.power.size),
+            freedom=self.freedom + np.maximum(rows - taken, _LEAST_SHARE * rows),
         )
 
     def __add__(self, other: "NoiseFloor") -> "NoiseFloor":
@@ -109,4 +112,5 @@ class NoiseFloor:
                 np.delete(values, left + 1) for values in (logarithm, power, freedom, weight)
             )
         lowest = max(_LOWEST_DENSITY * float(power.sum()), 1e-300)
-        return logarithm, np.log(np.maximum(power / freedom, lowest))
+        # with the variance estimated the error is Student's, whose variance is freedom / (freedom - 2) larger
+        return logarithm, np.log(np.maximum(power / np.maximum(freedom - 2.0, 0.5 * freedom), lowest))

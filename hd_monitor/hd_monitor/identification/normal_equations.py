@@ -64,6 +64,10 @@ class Evidence:
         Transform of the residual, free vibrations taken off, not weighted.
     derivatives : ndarray, shape (2 * bins, unknowns)
         The same of the prediction's derivatives.
+    std : ndarray, shape (2 * bins,)
+        Standard deviation that the noise floor gave the rows.
+    free_leverage : ndarray, shape (2 * bins,)
+        Part of the noise in every row that the fit of the free vibrations takes away.
     """
 
     stretch: Stretch
@@ -71,6 +75,21 @@ class Evidence:
     linearisation: Linearisation
     residual: FloatArray
     derivatives: FloatArray
+    std: FloatArray
+    free_leverage: FloatArray
+
+    def leverage(self, covariance: FloatArray) -> FloatArray:
+        """Part of the noise's variance in every row that the fit takes away, shape (2 * bins,).
+
+        It is large at the lines, which the unknowns follow, and next to nothing elsewhere.
+
+        Parameters
+        ----------
+        covariance : ndarray, shape (unknowns, unknowns)
+            Of the unknowns fitted, this stretch included; 0 for the others.
+        """
+        rows = self.derivatives / self.std[:, None]
+        return np.asarray(self.free_leverage + np.einsum("ij,ij->i", rows @ covariance, rows))
 
     def moved(self, step: FloatArray) -> "Evidence":
         """Return what the stretch says at a point a small `step` of the unknowns on, to first order of the step."""
@@ -104,4 +123,6 @@ def examine(stretch: Stretch, predictor: Predictor, values: FloatArray, floor: N
         linearisation=line,
         residual=white[:, 0] * std,
         derivatives=white[:, 1:] * std[:, None],
+        std=std,
+        free_leverage=np.einsum("ij,ij->i", free, free),
     )
