@@ -156,10 +156,6 @@ class Reducer:
             raise ParameterError(f"window = {window!r} is unknown; choose 'hann' or 'boxcar'")
         return widths[window] * math.tau / (WAVE_GENERATOR_LOBES * k)
 
-    def output_travel(self, wave_generator_angle: float) -> float:
-        """Output angle [rad] that belongs to a wave-generator angle [rad]."""
-        return wave_generator_angle / self.reduction
-
     @staticmethod
     def _check_harmonic(k: int) -> None:
         if k < 1:

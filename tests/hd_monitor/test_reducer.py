@@ -103,10 +103,6 @@ def test_travel_in_degrees():
     assert math.degrees(Reducer().travel_to_separate(3)) == pytest.approx(120.0)
 
 
-def test_output_travel_divides_by_the_reduction():
-    assert Reducer().output_travel(80.0) == 1.0
-
-
 def test_whole_numbers_of_another_type_are_taken():
     assert Reducer(flexspline_teeth=160.0, circular_spline_teeth=162.0) == Reducer()  # type: ignore[arg-type]
 

@@ -23,9 +23,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Add the command's arguments."""
     parser.description = (
         "Computes every figure, table and claim of Gu, Tong, Huang and Li (2021), prints each claim beside our "
-        "own number, and "
-        "with --report writes the figures. Exit status: 0 if every claim passes (places where the paper "
-        "contradicts itself, "
+        "own number, and with --report writes the figures. Exit status: 0 if every claim passes (places where the "
+        "paper contradicts itself, "
         "confirmed by our numbers, count as passing), 1 if one fails, 2 for unusable input."
     )
     parser.add_argument(
@@ -46,8 +45,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="FILE",
         type=Path,
         help="YAML with a reducer of your own (teeth, mount, fn, ζ, β; see my_reducer.yaml in the installed "
-        "config folder): the "
-        "same figures for it, without the paper's claims; or an edited copy of paper.yaml: the paper with those values",
+        "config folder): the same figures for it, without the paper's claims; or an edited copy of paper.yaml: the "
+        "paper with those values",
     )
     parser.add_argument("--list", action="store_true", help="list what can be computed, and end")
     parser.add_argument("--quiet", action="store_true", help="no progress on standard error")
@@ -68,8 +67,7 @@ def run(arguments: argparse.Namespace) -> int:
         if case.ignored:
             print(
                 f"{arguments.params.name}: ignoring {', '.join(case.ignored)}: they mean nothing to these "
-                "figures; right if "
-                "others share the file, else check the spelling",
+                "figures; right if others share the file, else check the spelling",
                 file=sys.stderr,
             )
         exhibits = show(case, arguments.only, _progress(arguments))

@@ -62,8 +62,7 @@ def diagnose(case: Case, speed: float, *, revolutions: int = OUTPUT_REVOLUTIONS)
     if assessment is None:
         raise HdMonitorError(
             f"{revolutions} output revolutions at {speed:g} rpm last {response.times[-1]:.2f} s, too short for "
-            "the monitor; "
-            "watch more of them"
+            "the monitor; watch more of them"
         )
     return assessment
 

@@ -1,7 +1,6 @@
 """Draws panels with matplotlib; the only module here that imports it."""
 
 import io
-from pathlib import Path
 
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -39,13 +38,6 @@ def png(exhibit: Exhibit) -> bytes:
     buffer = io.BytesIO()
     figure_of(exhibit).savefig(buffer, format="png", dpi=_DPI)
     return buffer.getvalue()
-
-
-def write_png(exhibit: Exhibit, folder: Path) -> Path:
-    """Write the drawing into a folder, named after the exhibit."""
-    path = folder / f"{exhibit.id}.png"
-    path.write_bytes(png(exhibit))
-    return path
 
 
 def _draw(axes: Axes, panel: Panel, figure: Figure) -> None:

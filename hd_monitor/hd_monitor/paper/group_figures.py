@@ -72,16 +72,16 @@ def group_panel(lines: tuple[Line, ...], loaded: SteadyRecord, unloaded: SteadyR
     """Draw a group with and without the load's fluctuation, on a logarithmic scale that shows the small lines."""
     spacing = min(b.frequency - a.frequency for a, b in pairwise(lines))
     low, high = lines[0].frequency - 1.6 * spacing, lines[-1].frequency + 1.6 * spacing
-    curves = []
-    for record, label, style in ((loaded, "with load fluctuation", "line"), (unloaded, "without", "dashed")):
-        x, y = _zoom(record, record.response.displacement * MICRO, low, high)
-        curves.append(Curve(x=x, y=y, label=label, style="line" if style == "line" else "dashed"))
-    top = max(float(c.y.max()) for c in curves)
+    (x, y), (plain_x, plain_y) = (_zoom(r, r.response.displacement * MICRO, low, high) for r in (loaded, unloaded))
+    top = max(float(y.max()), float(plain_y.max()))
     return Panel(
         title=title,
         x_label="frequency (Hz)",
         y_label="amplitude (µrad)",
-        curves=tuple(curves),
+        curves=(
+            Curve(x=x, y=y, label="with load fluctuation"),
+            Curve(x=plain_x, y=plain_y, label="without", style="dashed"),
+        ),
         marks=tuple(Mark(at=line.frequency, label=line.name) for line in lines),
         log_y=True,
         x_range=(low, high),
@@ -118,9 +118,8 @@ def figure_9(cases: Cases) -> Exhibit:
     return Exhibit(
         id="F9",
         title="The combined harmonic group in the spectrum of forced parametric vibration",
-        caption=f"Table 1 with a load fluctuation of {model.torque.load_fluctuation:g} N·m, "
-            f"{model.torque.load_order} per "
-        f"output revolution, {case.speed:g} rpm; displacement, {REVOLUTIONS} output revolutions, Hann window.",
+        caption=f"Table 1 with a load fluctuation of {model.torque.load_fluctuation:g} N·m, {model.torque.load_order} "
+        f"per output revolution, {case.speed:g} rpm; displacement, {REVOLUTIONS} output revolutions, Hann window.",
         panels=(
             spectrum_panel(
                 loaded.response.displacement * MICRO, loaded.response.rate, unit="µrad", top=1.25 * 3 * pair.flexspline,

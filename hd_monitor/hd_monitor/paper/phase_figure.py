@@ -103,8 +103,7 @@ def figure_17(cases: Cases) -> Exhibit:
                 f"except {abs(1.0 - measured.lattice_power):.0e} of it",
                 passed=measured.stroboscopic_spread > 0.05 and measured.lattice_power > 0.999,
                 note="With whole teeth the two frequencies have a common period, 40 wave-generator revolutions "
-                "for 160/162: "
-                f"after it the trace closes to {measured.closing_error:.0e} of its size.",
+                f"for 160/162: after it the trace closes to {measured.closing_error:.0e} of its size.",
             ),
         ),
     )

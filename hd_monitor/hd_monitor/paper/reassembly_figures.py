@@ -51,8 +51,7 @@ def _figure_18(cases: Cases, name: str, figure: str, title: str, claims: list[Cl
         id=figure,
         title=title,
         caption=f"A driver with fn = {case.model.dynamics.natural_frequency:g} Hz; RMS at {case.sensor_radius:g} "
-        "m, and the zoom "
-        f"spectrum at {case.speed:g} rpm.",
+        f"m, and the zoom spectrum at {case.speed:g} rpm.",
         panels=(curve_panel(case, curve, "Property curve", top=top), zoom),
         claims=tuple(claims),
         facts=(
@@ -77,8 +76,7 @@ def figure_18a(cases: Cases) -> Exhibit:
             ours=f"{peak_speed:g} rpm ({peak:.3g} g)",
             passed=abs(peak_speed - printed.SAMPLE_PEAK_SPEED.value) <= case.speeds.step / 2.0,
             note="A softer driver than section 3's: its resonance is at 1300 rpm, so fn = 43.4 Hz is used. The "
-            "growth rate is "
-            "negative at every speed, else there would be no steady state to plot.",
+            "growth rate is negative at every speed, else there would be no steady state to plot.",
         ),
         Claim(
             id="F18a",
@@ -112,8 +110,7 @@ def figure_18b(cases: Cases) -> Exhibit:
             ours=f"{ratio:.3f} ({before[1]:.3g} → {after[1]:.3g} g)",
             passed=_is_half(ratio),
             note="The paper prints no indexes: what is checked is that a circular spline with half the pitch "
-            "error halves the "
-            "peak, within ±0.1.",
+            "error halves the peak, within ±0.1.",
         ),
         Claim(
             id="F18b",
@@ -173,8 +170,7 @@ def figure_19(cases: Cases) -> Exhibit:
         id="F19",
         title="Teeth error in the circular spline, and the stiffness fluctuation it causes",
         caption="Eccentricity and tooth-to-tooth scatter; the interference is the difference of the errors in "
-        "the two meshing "
-        "zones, averaged over a quarter of the teeth, and stiffens the mesh in proportion.",
+        "the two meshing zones, averaged over a quarter of the teeth, and stiffens the mesh in proportion.",
         panels=(*panels, interference),
         claims=(
             Claim(

@@ -72,12 +72,6 @@ def spectrum(values: npt.ArrayLike, rate: float) -> Spectrum:
     return Spectrum(np.asarray(frequencies), np.sqrt(2.0 * power))
 
 
-def zoomed(whole: Spectrum, low: float, high: float) -> Spectrum:
-    """Return the part between two frequencies [Hz]."""
-    part = (whole.frequencies >= low) & (whole.frequencies <= high)
-    return Spectrum(whole.frequencies[part], whole.amplitude[part])
-
-
 def peaks(whole: Spectrum, threshold: float) -> FloatArray:
     """Frequencies [Hz] of local maxima above `threshold`."""
     a = whole.amplitude

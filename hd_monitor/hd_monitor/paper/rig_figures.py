@@ -112,8 +112,7 @@ def resonance_claim(figure: str, case: Case, speed: float, label: printed.Printe
         < 0.1 * case.model.dynamics.natural_frequency,
         contradiction=True,
         note=f"With ωo2 = 2n/60 the printed {multiple}× would be {as_defined:.0f} Hz; {multiple} cycles a shaft "
-        "revolution are "
-        f"{of_shaft:.2f} Hz, this pair. Numbered here by k.",
+        f"revolution are {of_shaft:.2f} Hz, this pair. Numbered here by k.",
     )
 
 

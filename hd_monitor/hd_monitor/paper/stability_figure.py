@@ -67,8 +67,7 @@ def stability(cases: Cases) -> Exhibit:
         title="Stability chart (Strutt)",
         caption=f"Floquet growth rate with a single β11, fn = {case.model.dynamics.natural_frequency:g} Hz, ζ = "
         f"{case.model.dynamics.damping_ratio:g}; the black line is the limit of stability. Without damping the "
-        "tongues would "
-        "touch β = 0.",
+        "tongues would touch β = 0.",
         panels=(chart_panel(case),),
         claims=(
             Claim(

@@ -176,8 +176,8 @@ def figure_7(cases: Cases) -> Exhibit:
                 ours=f"{measured.fit.index:.2%}",
                 passed=abs(measured.fit.index - printed.STATIC_INDEX.value) < 0.001,
                 note="The sample itself cannot be measured again: a virtual one with this index is put on the "
-                "virtual bed, "
-                "and the procedure must return it. Δ is half the fitted curve's range, so that β is eq. 2's amplitude.",
+                "virtual bed, and the procedure must return it. Δ is half the fitted curve's range, so that β is eq. "
+                "2's amplitude.",
             ),
             Claim(
                 id="F7",

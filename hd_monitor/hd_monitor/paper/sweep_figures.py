@@ -21,8 +21,7 @@ RATES = tuple(np.round(np.arange(0.40, 1.001, 0.05), 2).tolist())
 
 _SEED_NOTE = (
     "The sweep dwells in an unstable band and grows there from whatever was before, here the rounding of the "
-    "arithmetic: "
-    "the peak is good to about a decade, and depends on the rate, which the paper does not print (SR)."
+    "arithmetic: the peak is good to about a decade, and depends on the rate, which the paper does not print (SR)."
 )
 
 

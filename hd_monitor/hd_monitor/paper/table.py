@@ -45,6 +45,5 @@ def summary(claims: Iterable[Claim]) -> str:
     passed, failed, contradicting = (outcomes.count(o) for o in (Outcome.PASS, Outcome.FAIL, Outcome.CONTRADICTION))
     return (
         f"{len(outcomes)} claims: {passed} pass, {contradicting} where the paper contradicts itself (convention "
-        "named), "
-        f"{failed} fail"
+        f"named), {failed} fail"
     )
