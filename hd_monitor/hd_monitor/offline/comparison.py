@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 from scipy.stats import norm
 
 from .errors import BagError
+from .percent import percent_with_std
 from .result import plain
 
 SIGNIFICANT = 0.01
@@ -185,8 +186,8 @@ def _verdict_sentence(before: Mapping[str, Any], after: Mapping[str, Any]) -> st
 
 def _index_sentence(change: IndexChange) -> str:
     name = _name(change.spline)
-    old = f"{100 * change.before:.2f} ± {100 * change.before_std:.2g} %"
-    new = f"{100 * change.after:.2f} ± {100 * change.after_std:.2g} %"
+    old = percent_with_std(change.before, change.before_std)
+    new = percent_with_std(change.after, change.after_std)
     if not change.significant:
         return f"The {name}'s index did not change significantly: {old} before, {new} after (p = {change.p_value:.2g})."
     if not change.matters:

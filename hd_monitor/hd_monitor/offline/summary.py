@@ -3,6 +3,7 @@
 import math
 
 from ..diagnosis.verdict import Level
+from .percent import percent_with_std
 from .result import JointResult
 
 
@@ -20,8 +21,8 @@ def summarise(result: JointResult) -> str:
         kind = "relative index" if found.relative else "index"
         index, std = found.index, found.index_std
         lines += [
-            f"  flexspline {kind} {_percent(index.flexspline, std.flexspline)}, "
-            f"circular spline {_percent(index.circular_spline, std.circular_spline)}"
+            f"  flexspline {kind} {percent_with_std(index.flexspline, std.flexspline)}, "
+            f"circular spline {percent_with_std(index.circular_spline, std.circular_spline)}"
             + ("" if found.relative else f"; limits {100 * last.warn_limit:g} % and {100 * last.error_limit:g} %"),
             f"  from {math.degrees(found.travel):.0f}° of travel, signal to noise {found.signal_to_noise:.0f} dB",
         ]
@@ -43,7 +44,3 @@ def summarise(result: JointResult) -> str:
     lines.append(f"  {samples}{quality.motion_messages} joint states; {wrong}")
     lines += [f"  note: {note}" for note in result.plan.notes]
     return "\n".join(lines)
-
-
-def _percent(value: float, std: float) -> str:
-    return f"{100 * value:.2f} ± {100 * std:.2g} %"
