@@ -2,35 +2,26 @@
 
 import numpy as np
 import pytest
+from tests import oracle
 
 from hd_monitor.errors import ParameterError
-from hd_monitor.model import ParametricModel, StiffnessSeries, Torque, table_1
+from hd_monitor.model import Torque, table_1
 from hd_monitor.model.simulation import constant_speed, linear_sweep, simulate
 from hd_monitor.reducer import Reducer
 
-ORACLE_MODEL = ParametricModel(
-    flexspline=StiffnessSeries((0.06, 0.03, 0.02)),
-    circular_spline=StiffnessSeries((0.03, 0.015, 0.01), (0.7, 1.4, 2.1)),
-)
-# θ'' in rad/s², (circular spline, flexspline) for k = 1..4, from an independent Runge-Kutta integration at 2 kHz.
-ORACLE = {
-    400.0: [(0.0637, 0.1274), (0.1516, 0.2939), (0.3833, 0.7730), (0.2641, 1.3663)],
-    1600.0: [(13.02, 32.93), (0.5399, 1.0676), (0.3097, 0.7766), (0.0737, 0.3679)],
-}
 
-
-@pytest.mark.parametrize("speed", ORACLE)
+@pytest.mark.parametrize("speed", oracle.LINES)
 def test_lines_agree_with_the_runge_kutta_oracle(speed):
-    revolution = 60.0 * ORACLE_MODEL.reducer.reduction / speed
+    revolution = 60.0 * oracle.MODEL.reducer.reduction / speed
     settling = 3.0
     response = simulate(
-        ORACLE_MODEL, constant_speed(ORACLE_MODEL.reducer, speed), duration=settling + revolution, rate=4000.0
+        oracle.MODEL, constant_speed(oracle.MODEL.reducer, speed), duration=settling + revolution, rate=4000.0
     ).after(settling)
     size = round(revolution * response.rate)
     samples, angle = response.acceleration[:size], response.output_angle[:size]
-    orders = [k * order for k in range(1, 5) for order in ORACLE_MODEL.reducer.output_orders]
+    orders = [k * order for k in range(1, 5) for order in oracle.MODEL.reducer.output_orders]
     measured = [2.0 * abs(np.mean(samples * np.exp(-1j * order * angle))) for order in orders]
-    expected = np.ravel(ORACLE[speed])
+    expected = np.ravel(oracle.LINES[speed])
     assert np.abs(measured - expected).max() <= 2e-3 * expected.max()
 
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests import oracle
 
 from hd_monitor.errors import ParameterError
 from hd_monitor.model import (
@@ -21,17 +22,6 @@ from hd_monitor.model import (
 )
 from hd_monitor.model.simulation import constant_speed, simulate
 from hd_monitor.reducer import Mount, Reducer
-
-ORACLE_MODEL = ParametricModel(
-    flexspline=StiffnessSeries((0.06, 0.03, 0.02)),
-    circular_spline=StiffnessSeries((0.03, 0.015, 0.01), (0.7, 1.4, 2.1)),
-)
-# θ'' [rad/s²] of the lines [CS, FS] for k = 1 … 4, computed by another program: RK4 at 2 kHz, good to 4e-4.
-ORACLE = {
-    400.0: [(0.0637, 0.1274), (0.1516, 0.2939), (0.3833, 0.7730), (0.2641, 1.3663)],
-    1600.0: [(13.02, 32.93), (0.5399, 1.0676), (0.3097, 0.7766), (0.0737, 0.3679)],
-}
-RK4_ERROR = 4e-4
 
 
 def integrated_period(model: ParametricModel, speed_rpm: float, steps_per_second: float = 16_000.0):
@@ -54,18 +44,18 @@ def integrated_period(model: ParametricModel, speed_rpm: float, steps_per_second
     return {order: spectrum[order // common] for order in range(0, common * (steps // 2), common)}
 
 
-@pytest.mark.parametrize("speed_rpm", sorted(ORACLE))
+@pytest.mark.parametrize("speed_rpm", sorted(oracle.LINES))
 def test_lines_are_those_computed_elsewhere(speed_rpm):
-    for pair, expected in zip(line_pairs(ORACLE_MODEL, speed_rpm), ORACLE[speed_rpm], strict=True):
+    for pair, expected in zip(line_pairs(oracle.MODEL, speed_rpm), oracle.LINES[speed_rpm], strict=True):
         for line, printed in zip(pair, expected, strict=True):
             last_digit = 0.005 if printed > 10 else 0.00005
-            assert abs(line - printed) <= RK4_ERROR * printed + last_digit
+            assert abs(line - printed) <= oracle.RK4_ERROR * printed + last_digit
 
 
 @pytest.mark.parametrize("speed_rpm", [400.0, 850.0, 1600.0, 3000.0])
 def test_agrees_with_time_integration(speed_rpm):
-    state = steady_state(ORACLE_MODEL, speed_rpm, combination_order=11)
-    lines = integrated_period(ORACLE_MODEL, speed_rpm)
+    state = steady_state(oracle.MODEL, speed_rpm, combination_order=11)
+    lines = integrated_period(oracle.MODEL, speed_rpm)
     largest = max(map(abs, lines.values()))
     for k in (1, 2, 3, 4):
         for order in (160 * k, 162 * k):
@@ -75,8 +65,8 @@ def test_agrees_with_time_integration(speed_rpm):
 def test_the_default_order_of_combinations_is_enough():
     """physics.md promises 2e-4 to 2e-3 of the largest line with |p| + |q| up to 7."""
     for speed in (400.0, 1600.0, 3000.0):
-        wide = steady_state(ORACLE_MODEL, speed, combination_order=13)
-        narrow = steady_state(ORACLE_MODEL, speed)
+        wide = steady_state(oracle.MODEL, speed, combination_order=13)
+        narrow = steady_state(oracle.MODEL, speed)
         largest = np.abs(wide.acceleration).max()
         for order in narrow.orders:
             difference = narrow.acceleration_phasor(order) - wide.acceleration_phasor(order)
@@ -176,7 +166,7 @@ def test_the_direction_of_rotation_does_not_matter_without_phases():
 
 def test_turning_back_with_phases_agrees_with_time_integration():
     # phases that are no mere shift of the origin: the defects look different from behind
-    model = replace(ORACLE_MODEL, flexspline=StiffnessSeries((0.06, 0.03, 0.02), (0.0, 1.0, -2.0)))
+    model = replace(oracle.MODEL, flexspline=StiffnessSeries((0.06, 0.03, 0.02), (0.0, 1.0, -2.0)))
     state = steady_state(model, -1600.0, combination_order=11)
     run = simulate(model, constant_speed(model.reducer, -1600.0), duration=9.0, rate=8000.0)
     last = slice(-12_000, None)  # 1.5 s are 40 wave-generator revolutions: a whole period
