@@ -152,16 +152,14 @@ class _Encoder:
 
     def __init__(self, settings: RigSettings) -> None:
         self._settings = settings
-        self._template = b""
 
     def encode(self, stretch: Stretch, epoch: int) -> list[bytes]:
         """Return the messages, one a row."""
         raise NotImplementedError
 
     def _copies(self, message: Any, count: int) -> np.ndarray[Any, Any]:
-        self._template = bytes(_STORE.serialize_cdr(message, self.message_type))
-        record = record_layout(self._template, self.message_type)
-        return np.frombuffer(bytearray(self._template * count), dtype=record)
+        template = bytes(_STORE.serialize_cdr(message, self.message_type))
+        return np.frombuffer(bytearray(template * count), dtype=record_layout(template, self.message_type))
 
     @staticmethod
     def _cut(rows: np.ndarray[Any, Any]) -> list[bytes]:

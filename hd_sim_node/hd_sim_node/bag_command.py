@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from hd_monitor.errors import HdMonitorError
+from hd_monitor.errors import HdMonitorError, ParameterError
 
 from .defects import CUSTOM, DEFECTS
 from .node_parameters import NODE_PARAMETERS
@@ -64,7 +64,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     except ModuleNotFoundError as error:
         print(
             f"hd-sim-bag: needs the Python package {error.name!r}, which is not installed; "
-            "pip install 'hd-monitor[offline]'",
+            "pip install '.[offline]' in the checkout",
             file=sys.stderr,
         )
         return UNUSABLE_INPUT
@@ -90,8 +90,7 @@ def _run(arguments: argparse.Namespace) -> int:
         print(f"hd-sim-bag: {remark}", file=sys.stderr)
     stamp = time.time() if arguments.start is None else arguments.start
     if not (math.isfinite(stamp) and 0.0 <= stamp < 2.0**31):
-        print(f"hd-sim-bag: --start {stamp:g} is no time that a stamp can hold; give 0 to 2147483647", file=sys.stderr)
-        return UNUSABLE_INPUT
+        raise ParameterError(f"--start {stamp:g} is no time that a stamp can hold; give 0 to 2147483647")
     begun = time.monotonic()
     tty = sys.stderr.isatty()
 

@@ -111,7 +111,7 @@ def _check_report(folder: Path) -> None:
     missing = [name for name in ("matplotlib", "jinja2") if find_spec(name) is None]
     if missing:
         raise HdMonitorError(
-            f"--report needs {' and '.join(missing)}; pip install 'hd-monitor[offline]', or leave it out"
+            f"--report needs {' and '.join(missing)}; pip install '.[offline]' in the checkout, or leave it out"
         )
     try:
         folder.mkdir(parents=True, exist_ok=True)
