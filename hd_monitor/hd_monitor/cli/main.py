@@ -2,6 +2,8 @@
 
 import argparse
 import importlib
+import os
+import signal
 import sys
 from collections.abc import Sequence
 from typing import Protocol, cast
@@ -10,6 +12,9 @@ from ..errors import HdMonitorError
 
 UNUSABLE_INPUT = 2
 """Exit status for input of which nothing can be said."""
+
+NOBODY_READS = 128 + signal.SIGPIPE
+"""Exit status where the reader of the output left, as a shell reports it of other commands."""
 
 COMMANDS = {
     "demo": ("hd_monitor.cli.demo", "simulate a defective reducer and watch it over real DDS"),
@@ -54,7 +59,12 @@ def main(argv: Sequence[str] | None = None) -> int:
     if module is None:  # argparse has already refused anything else
         parser.error(f"unknown command {arguments.command!r}")
     try:
-        return module.run(arguments)
+        status = module.run(arguments)
+        sys.stdout.flush()
+        return status
+    except BrokenPipeError:  # who reads has had enough, as `| head` has; nor must the flush at the end complain
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return NOBODY_READS
     except HdMonitorError as error:
         print(f"hd-monitor {arguments.command}: {error}", file=sys.stderr)
         return UNUSABLE_INPUT

@@ -1,3 +1,4 @@
+import os
 import subprocess
 import sys
 
@@ -52,3 +53,13 @@ def test_what_is_missing_is_one_clear_line(package: str, words: tuple[str, ...],
 def test_a_command_needs_no_other_commands_packages() -> None:
     done = run_without("rclpy", "replay", "--help")
     assert done.returncode == 0, done.stderr
+
+
+def test_a_reader_that_leaves_is_no_error_worth_a_traceback() -> None:
+    reading, writing = os.pipe()
+    os.close(reading)
+    done = subprocess.run(
+        [sys.executable, "-m", "hd_monitor.cli.main", "parameters"], stdout=writing, stderr=subprocess.PIPE, check=False
+    )
+    os.close(writing)
+    assert (done.returncode, done.stderr) == (141, b"")
