@@ -45,7 +45,7 @@ def verdict_entry(assessment: Assessment) -> dict[str, Any]:
 
 
 def line_entries(found: Identification | None) -> list[dict[str, Any]]:
-    """Write the amplitudes of the characteristic lines and their standard deviations [rad/s²]."""
+    """Write the amplitudes of the characteristic lines and their standard deviations, in the signal's unit."""
     return [
         {
             "k": line.k,
