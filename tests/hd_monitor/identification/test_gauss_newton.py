@@ -86,9 +86,12 @@ def test_a_small_step_costs_a_single_simulation(fitted, monkeypatch):
     task = problem(stretch(3, seconds=0.5), prior=knowledge)
     simulated = []
     original = Predictor.linearise
-    monkeypatch.setattr(
-        Predictor, "linearise", lambda self, *arguments: simulated.append(1) or original(self, *arguments)
-    )
+
+    def linearise(self, *arguments):
+        simulated.append(arguments)
+        return original(self, *arguments)
+
+    monkeypatch.setattr(Predictor, "linearise", linearise)
     better = task.solve(fit.values, rounds=3)
     assert len(simulated) == 1
     assert better.cost < task.at(fit.values).cost
