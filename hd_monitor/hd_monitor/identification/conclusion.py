@@ -28,6 +28,9 @@ BoolArray = npt.NDArray[np.bool_]
 WELL_KNOWN = 0.02
 """Standard deviation of the indexes over the larger of index and warn limit that satisfies."""
 
+UNSEEN = 3.0
+"""Amplitude wrongly taken for defects, over that left at the lines: the unknowns follow what they can of anything."""
+
 
 class Conclusions:
     """Draws conclusions from the state of an estimation.
@@ -65,9 +68,11 @@ class Conclusions:
     ) -> Identification:
         """Pack the result."""
         u = self._unknowns
-        inflation = misfit.inflation(coverage.span)
-        covariance = inflation * knowledge.covariance(active)
-        indexes = stiffness_indexes(u, values, covariance)
+        inflation = max(misfit.inflation(coverage.span), misfit.scatter.inflation)
+        noise = inflation * knowledge.covariance(active)
+        systematic = self._systematic(values, misfit, coverage)
+        covariance = noise + systematic
+        indexes = stiffness_indexes(u, values, noise, systematic)
         dynamics = u.dynamics(predictor.given, values)
         loads = u.phasors(values, u.load)
         reference = predictor.reference_torque
@@ -112,6 +117,17 @@ class Conclusions:
             blockers=findings.blockers,
             beta_covariance=np.stack([_of_phasors(covariance, part) for part in (u.circular_spline, u.flexspline)]),
         )
+
+    def _systematic(self, values: FloatArray, misfit: LineResidual, coverage: Coverage) -> FloatArray:
+        """Covariance of errors that more data of the same kind would not average out, shape (unknowns, unknowns)."""
+        u = self._unknowns
+        covariance = np.zeros((u.size, u.size))
+        if misfit.inflation(coverage.span) > 1.0:
+            size = UNSEEN * misfit.unexplained * float(np.linalg.norm(values[u.stiffness]))
+            for part in (u.circular_spline, u.flexspline):
+                direction = values[part] / max(float(np.linalg.norm(values[part])), 1e-12)
+                covariance[part, part] += size**2 * np.outer(direction, direction)
+        return covariance
 
     def _model(self, dynamics: Dynamics, values: FloatArray) -> ParametricModel:
         """Return the reducer as identified, without its load."""

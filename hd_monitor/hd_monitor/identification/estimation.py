@@ -340,7 +340,7 @@ class Estimation:
         else:
             floor, rest = self._floor + fit.floor, self._line_residual
         for item in fit.evidence:
-            rest = rest.plus(item, floor, self._reducer)
+            rest = rest.plus(item, fit.covariance, floor, self._reducer)
         return floor, rest
 
     def age(self, duration: float) -> None:

@@ -24,7 +24,9 @@ class Indexes:
     correlation: float
 
 
-def stiffness_indexes(unknowns: Unknowns, values: FloatArray, covariance: FloatArray) -> Indexes:
+def stiffness_indexes(
+    unknowns: Unknowns, values: FloatArray, covariance: FloatArray, systematic: FloatArray | None = None
+) -> Indexes:
     """Indexes of Gaussian β.
 
     Parameters
@@ -32,6 +34,9 @@ def stiffness_indexes(unknowns: Unknowns, values: FloatArray, covariance: FloatA
     unknowns : Unknowns
     values : ndarray, shape (unknowns,)
     covariance : ndarray, shape (unknowns, unknowns)
+        Of the errors by noise, which lift the sum of the squares.
+    systematic : ndarray or None, shape (unknowns, unknowns)
+        Covariance of further errors, which widen the uncertainty but of whose sign nothing is known.
 
     Returns
     -------
@@ -47,12 +52,14 @@ def stiffness_indexes(unknowns: Unknowns, values: FloatArray, covariance: FloatA
     parts = unknowns.circular_spline, unknowns.flexspline
     z = [values[part] for part in parts]
     c = [[covariance[a, b] for b in parts] for a in parts]
+    further = np.zeros_like(covariance) if systematic is None else systematic
+    s = [[further[a, b] for b in parts] for a in parts]
     index, std, spread = [], [], []
     for i in range(2):
         own = c[i][i]
         square = max(float(z[i] @ z[i]) - float(np.trace(own)), 0.0)
         noise = 2.0 * float(np.sum(own * own))
-        variance = max(4.0 * float(z[i] @ own @ z[i]) - noise, noise)
+        variance = max(4.0 * float(z[i] @ own @ z[i]) - noise, noise) + 4.0 * float(z[i] @ s[i][i] @ z[i])
         root, deviation = math.sqrt(square), math.sqrt(variance)
         index.append(root)
         spread.append(deviation)
@@ -60,6 +67,6 @@ def stiffness_indexes(unknowns: Unknowns, values: FloatArray, covariance: FloatA
         size = deviation / (root + math.sqrt(square + deviation)) if deviation > 0.0 else 0.0
         std.append(max(size, root / 1.96) if square < _EXPLAINED * math.sqrt(noise) else size)
     product = spread[0] * spread[1]
-    joint = 4.0 * float(z[0] @ c[0][1] @ z[1])
+    joint = 4.0 * float(z[0] @ (c[0][1] + s[0][1]) @ z[1])
     correlation = float(np.clip(joint / product, -1.0, 1.0)) if product > 0.0 else 0.0
     return Indexes(index=LinePair(*index), std=LinePair(*std), correlation=correlation)

@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from ..reducer import Reducer
 from .noise_floor import NoiseFloor
-from .normal_equations import Evidence
+from .normal_equations import Evidence, NormalEquations
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -17,6 +17,66 @@ SIDE = 3
 """Orders looked at on either side of a pair's middle: the pair, the lines between and a load's side lines."""
 
 _BLOCK = 0.05  # rad of way over which the residual is summed at once
+_TOLD = 1e-3  # share of a stretch in what is known of a combination of unknowns, from which its wish counts
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Scatter:
+    """How much the stretches contradict each other in what they say of the unknowns.
+
+    The noise floor is measured over bands of frequency much wider than a line. Noise that comes and goes with the
+    vibration itself (of the measured torque, of the encoder) gathers around the lines, where it hardly lifts the floor
+    but is all that matters to the unknowns; so does whatever else the model leaves out near the lines. Then the
+    stretches' wishes for the unknowns differ by more than the floor says.
+
+    Attributes
+    ----------
+    squares : float
+        Sum over all stretches of the squares of what each would change, in its own standard deviations.
+    freedom : float
+        Expectation of that sum if the residual is nothing but noise like the floor.
+    """
+
+    squares: float = 0.0
+    freedom: float = 0.0
+
+    def plus(self, equations: NormalEquations, covariance: FloatArray) -> "Scatter":
+        """Add a stretch.
+
+        Parameters
+        ----------
+        equations : NormalEquations
+            What the stretch says around the values fitted.
+        covariance : ndarray, shape (unknowns, unknowns)
+            Of the unknowns fitted, this stretch included; 0 for the others.
+        """
+        scale = np.sqrt(covariance.diagonal())
+        fitted = np.flatnonzero(scale)
+        scale = scale[fitted]
+        place = np.ix_(fitted, fitted)
+        values, directions = np.linalg.eigh(equations.information[place] * np.outer(scale, scale))
+        told = values > _TOLD
+        directions = directions[:, told]
+        wishes = directions.T @ (equations.gradient[fitted] * scale) / np.sqrt(values[told])
+        # fitting the unknowns to this stretch, too, has taken a part of its noise away
+        taken = np.einsum(
+            "ij,ij->", directions @ (directions.T * values[told, None]), covariance[place] / np.outer(scale, scale)
+        )
+        return Scatter(
+            squares=self.squares + float(wishes @ wishes),
+            freedom=self.freedom + max(float(np.count_nonzero(told)) - float(taken), 0.0),
+        )
+
+    def faded(self, keep: float) -> "Scatter":
+        """Return the sums of data that count `keep` times."""
+        return Scatter(squares=keep * self.squares, freedom=keep * self.freedom)
+
+    @property
+    def inflation(self) -> float:
+        """Factor on the variances that owns up to the scatter: 1 as long as chance explains it."""
+        if self.freedom <= 0.0:
+            return 1.0
+        return max(1.0, self.squares / (self.freedom + math.sqrt(2.0 * self.freedom)))
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -33,21 +93,24 @@ class LineResidual:
         Expected squares of the residual's sums if there is nothing but noise.
     travel : float
         Way [rad] that the output went.
+    scatter : Scatter
+        How much the stretches contradict each other.
     """
 
     sums: ComplexArray
     predicted: ComplexArray
     weight: FloatArray
     travel: float
+    scatter: Scatter
 
     @classmethod
     def empty(cls, harmonics: int) -> "LineResidual":
         """Return the sums of no data."""
         nothing = np.zeros((harmonics, 2 * SIDE + 1), dtype=np.complex128)
-        return cls(sums=nothing, predicted=nothing, weight=np.zeros(harmonics), travel=0.0)
+        return cls(sums=nothing, predicted=nothing, weight=np.zeros(harmonics), travel=0.0, scatter=Scatter())
 
-    def plus(self, evidence: Evidence, floor: NoiseFloor, reducer: Reducer) -> "LineResidual":
-        """Add a stretch."""
+    def plus(self, evidence: Evidence, covariance: FloatArray, floor: NoiseFloor, reducer: Reducer) -> "LineResidual":
+        """Add a stretch; the covariance is that of the unknowns fitted, 0 for the others."""
         stretch, harmonics = evidence.stretch, self.weight.size
         line = evidence.linearisation
         signals = np.stack([line.residual, line.predicted]) * stretch.used
@@ -70,7 +133,13 @@ class LineResidual:
                 sums[k] += parts[:, 0]
                 predicted[k] += parts[:, 1]
                 weight[k] += float(np.count_nonzero(stretch.used[seen]))
-        return LineResidual(sums=sums, predicted=predicted, weight=weight, travel=self.travel + stretch.travel)
+        return LineResidual(
+            sums=sums,
+            predicted=predicted,
+            weight=weight,
+            travel=self.travel + stretch.travel,
+            scatter=self.scatter.plus(evidence.equations, covariance),
+        )
 
     def faded(self, keep: float) -> "LineResidual":
         """Return the sums of data that count `keep` times."""
@@ -79,6 +148,7 @@ class LineResidual:
             predicted=keep * self.predicted,
             weight=keep * keep * self.weight,
             travel=keep * self.travel,
+            scatter=self.scatter.faded(keep),
         )
 
     @property

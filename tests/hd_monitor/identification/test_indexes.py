@@ -66,3 +66,16 @@ def test_results_are_always_finite_and_in_range(circular, flex, seed, size):
     assert min(result.std) > 0.0
     assert np.isfinite([*result.index, *result.std, result.correlation]).all()
     assert -1.0 <= result.correlation <= 1.0
+
+
+def test_systematic_errors_widen_the_interval_and_leave_the_index():
+    values = vector(0.03, 0.08)
+    noise = 1e-6 * np.eye(UNKNOWNS.size)
+    direction = np.zeros(UNKNOWNS.size)
+    direction[UNKNOWNS.stiffness] = 0.1 * values[UNKNOWNS.stiffness]  # all β may be wrong by 10 % together
+    alone, widened = (stiffness_indexes(UNKNOWNS, values, noise, s) for s in (None, np.outer(direction, direction)))
+    assert widened.index == alone.index
+    for index, before, after in zip(alone.index, alone.std, widened.std, strict=True):
+        # the root of |β|² plus its standard deviation: at a tenth of the index 5 % below the usual one
+        assert after == pytest.approx(np.hypot(before, 0.1 * index), rel=0.06)
+    assert widened.correlation > 0.9 > 0.1 > abs(alone.correlation)
