@@ -1,6 +1,5 @@
 """The state of an estimation: evidence gathered so far, the best values of the unknowns, and when to look again."""
 
-import cmath
 import copy
 import math
 from collections.abc import Sequence
@@ -14,6 +13,15 @@ from ..errors import HdMonitorError, ParameterError
 from ..settings import JointSettings
 from .conclusion import Conclusions
 from .coverage import Coverage
+from .exploration import (
+    START_LOADS,
+    explore_newest,
+    is_better,
+    load_starts,
+    newest_stretches,
+    other_starts,
+    signal_level,
+)
 from .gauss_newton import Fit, Problem
 from .knowledge import Knowledge
 from .linearisation import Predictor
@@ -41,16 +49,15 @@ FREQUENCY_KNOWN, DAMPING_KNOWN = 0.005, 0.05
 """Standard deviations of ln fn and ln ζ below which data know them better than the parameters do."""
 
 _SPEED_VARIES = 0.05  # relative standard deviation of the speed
-_START_LOADS = tuple(1.5 * cmath.exp(0.5j * math.pi * quarter) for quarter in range(4))
-_START_FREQUENCIES = (-0.12, -0.08, -0.04, 0.04, 0.08, 0.12)  # ln fn relative to the given one
 _SECOND_LOOK = 3.5  # s of motion at which the exploration made on the first second or so is repeated, if in doubt
 _POOR = 1.5  # inflation of the variances, by what the fit leaves at the lines, from which other solutions are sought
 _NOMINAL_INDEX = 0.05  # of the larger spline, where an unknown torque leaves the scale open
 _SLIP = 0.5  # of the top speed, by which velocities may differ from the change of the positions (root mean square)
 _ROUNDS, _FEW_ROUNDS = 8, 4
 _MOVED = 3.0  # standard deviations by which values may move before earlier stretches are linearised anew
-_START_DELAYS = (-0.012, -0.006, -0.003, 0.003, 0.006, 0.012)  # s
-_EXPLORED = 4.5  # s of the newest motion on which other solutions are tried
+_EARLY = 6.0  # s of poor fits up to which a look for other solutions is soon followed by a thorough one
+_SOON, _LATE = 2.0, 5.0  # factors by which the time of poor fits grows between such looks, at first and later
+_APART = 1.2  # factor by which all motion grows between them, if fits are poor now and then
 
 
 class Estimation:
@@ -97,6 +104,7 @@ class Estimation:
         self._floor: NoiseFloor | None = None
         self._line_residual = LineResidual.empty(u.harmonics)
         self._explored = 0.0
+        self._poor_since = math.inf
         self._coverage = Coverage()
         self._teeth = ToothWatch()
         self._conclusions = Conclusions(settings, u)
@@ -135,6 +143,8 @@ class Estimation:
             self._recent.pop(0)
         fit = self._fit()
         floor, rest = self._rest(fit)
+        poor = rest.inflation(self._coverage.span) > _POOR
+        self._poor_since = min(self._poor_since, self.seconds) if poor else math.inf
         if self._is_poor(rest):
             fit = self._turn_sensor(fit)
             floor, rest = self._rest(fit)
@@ -171,7 +181,7 @@ class Estimation:
                 stretches=[stretch],
                 predictor=Predictor(unknowns=u, given=self._given, reference_torque=unit),
                 prior=self._prior,
-                floor=_signal_level([stretch]),
+                floor=signal_level([stretch]),
                 active=u.mask(u.stiffness),
             )
             step = problem.at(u.zero()).step
@@ -189,7 +199,7 @@ class Estimation:
             stretches=stretches,
             predictor=self._predictor,
             prior=prior,
-            floor=_signal_level(stretches) if self._floor is None else self._floor,
+            floor=signal_level(stretches) if self._floor is None else self._floor,
             active=self._active,
         )
 
@@ -214,27 +224,15 @@ class Estimation:
         self._learnt = Knowledge.none(self._unknowns.size)
         return self._problem(self._recent, self._prior)
 
-    def _load_starts(self) -> list[FloatArray]:
-        """Return the best values so far, and starts for the load, whose phase has local minima."""
-        u = self._unknowns
-        starts = [self._values]
-        for load in (0.0, *_START_LOADS):
-            start = self._values * ~u.mask(u.stiffness, u.load)
-            start[u.load] = [0.0, load.real, 0.0, load.imag]
-            starts.append(start)
-        return starts
-
     def _explore(self, problem: Problem, starts: Sequence[FloatArray], *, rounds: int) -> Fit:
         """Solve from several starts on the newest data, then on all."""
         self._explored = self.seconds
-        newest = [problem.stretches[-1]]
-        for stretch in problem.stretches[-2::-1]:
-            if sum(s.duration for s in newest) + stretch.duration > _EXPLORED:
-                break
-            newest.append(stretch)
-        small = replace(problem, stretches=newest, floor=_signal_level(newest))
-        small, best = small.explore(starts, rounds=rounds)
-        candidates = [best.values, starts[0]] if len(starts) > 1 else [best.values]
+        small, best = explore_newest(problem, starts, rounds=rounds)
+        return self._follow(problem, small, [best.values, starts[0]] if len(starts) > 1 else [best.values], rounds)
+
+    @staticmethod
+    def _follow(problem: Problem, small: Problem, candidates: Sequence[FloatArray], rounds: int) -> Fit:
+        """Solve on all data from what the newest told."""
         whole = replace(problem, floor=small.floor)
         fit = min((whole.solve(values, rounds=rounds) for values in candidates), key=lambda f: f.cost)
         return replace(problem, floor=fit.floor).solve(fit.values, rounds=rounds)
@@ -244,7 +242,12 @@ class Estimation:
         inflation = rest.inflation(self._coverage.span)
         if self._explored < _SECOND_LOOK <= self.seconds:
             return inflation > 1.0
-        return inflation > _POOR and self.seconds > 2.0 + 2.0 * self._explored
+        if self._explored < _SECOND_LOOK or self._teeth.rival is not None or not inflation > _POOR:
+            return False  # too early; or the teeth are wrong, and so would be every solution
+        if self._explored < self._poor_since:
+            return self.seconds > _APART * self._explored  # what was right so far is right no more
+        looked, age = self._explored - self._poor_since, self.seconds - self._poor_since
+        return age > (_SOON if looked < _EARLY else _LATE) * max(looked, _SECOND_LOOK)
 
     def _turn_sensor(self, fit: Fit) -> Fit:
         """Try the sensor's sign the other way round: against that of the torque it is a matter of mounting.
@@ -252,39 +255,43 @@ class Estimation:
         To first order the opposite sign only turns the phases of all β; the coupling of the lines tells it.
         """
         u = self._unknowns
-        as_it_is = self._problem(self._recent, self._prior).solve(fit.values, rounds=_FEW_ROUNDS)
-        kept = self._recent, self._active, self._learnt, self._fitted_anew
+        given = self._active & ~u.mask(u.frequency, u.damping, u.delay)
+        opposite = np.where(given, fit.values, 0.0) * np.where(u.mask(u.stiffness), -1.0, 1.0)
+        newest = newest_stretches(self._recent)
+        for stretches in [newest, self._recent] if len(newest) < len(self._recent) else [newest]:
+            as_it_is = self._problem(stretches, self._prior).solve(fit.values, rounds=_FEW_ROUNDS)
+            mirrored = replace(self._problem([s.mirrored() for s in stretches], self._prior), active=given)
+            turned = mirrored.solve(opposite, rounds=_ROUNDS)
+            if turned.cost >= as_it_is.cost:
+                return fit  # the newest stretches alone may err, but spare the effort where they are clear
+        self._mounting = -self._mounting
         self._recent = [stretch.mirrored() for stretch in self._recent]
-        self._active = self._active & ~u.mask(u.frequency, u.damping, u.delay)
-        start = np.where(self._active, fit.values, 0.0) * np.where(u.mask(u.stiffness), -1.0, 1.0)
-        turned = self._anew().solve(start, rounds=_ROUNDS)
-        if turned.cost < as_it_is.cost:
-            self._mounting = -self._mounting
-            return turned
-        self._recent, self._active, self._learnt, self._fitted_anew = kept
-        return fit
+        self._active = given
+        self._anew()
+        return turned
 
     def _look_elsewhere(self, fit: Fit) -> Fit:
-        """Try other solutions on the recent stretches: the fit leaves more at the lines than noise could."""
-        u = self._unknowns
+        """Try other solutions on the newest stretches: the fit leaves more at the lines than noise could.
+
+        If later none is better there, the fit stays as it is, and no effort goes into all recent stretches.
+        """
+        u, kept = self._unknowns, self._active
         self._active = self._active & ~u.mask(u.frequency, u.damping, u.delay)
         if self._refine:
             self._active = self._active | u.mask(u.frequency, u.damping)
-        if self._coverage.speed_varies:
+        lag = self._coverage.speed_varies
+        if lag:
             self._active = self._active | u.mask(u.delay)
-        self._values = np.where(self._active, fit.values, 0.0)
-        starts = self._load_starts()
-        if self._refine:
-            for shift in _START_FREQUENCIES:
-                start = u.zero()
-                start[u.frequency] = shift
-                starts.append(start)
-        if self._coverage.speed_varies:
-            for delay in _START_DELAYS:
-                start = u.zero()
-                start[u.delay] = delay
-                starts.append(start)
-        return self._explore(self._anew(), starts, rounds=_ROUNDS)
+        thorough, self._explored = self._explored < self._poor_since + _EARLY, self.seconds
+        starts = load_starts(u, np.where(self._active, fit.values, 0.0), thorough=thorough)
+        starts += other_starts(u, frequency=self._refine, delay=lag, thorough=thorough)
+        small, best = explore_newest(self._problem(self._recent, self._prior), starts, rounds=_ROUNDS)
+        if thorough:
+            return self._follow(self._anew(), small, [best.values, starts[0]], _ROUNDS)
+        if is_better(small, best, fit.values):
+            return self._follow(self._anew(), small, [best.values], _FEW_ROUNDS)
+        self._active = kept
+        return fit
 
     def _question(self, fit: Fit) -> Fit:
         """Ask whether what was given agrees with the data, and estimate along what does not."""
@@ -317,7 +324,7 @@ class Estimation:
             prior=self._prior,
             reference_torque=self._predictor.reference_torque,
             values=fit.values,
-            load_starts=(0.0, *_START_LOADS[::2]),
+            load_starts=(0.0, START_LOADS[0]),
             inertial=self._builder.inertial,
         )
         self._teeth = self._teeth.after(fit, self._given, anew=self._fitted_anew == self.seconds).look(
@@ -385,9 +392,3 @@ def _given_std(unknowns: Unknowns) -> FloatArray:
     std[unknowns.delay] = 0.01
     std[unknowns.inertia] = 0.7
     return std
-
-
-def _signal_level(stretches: Sequence[Stretch]) -> NoiseFloor:
-    """White noise as strong as the whole signal: where a fit starts."""
-    densities = [2.0 * s.period * float(np.mean(s.transform(s.acceleration[:, None]) ** 2)) / s.fill for s in stretches]
-    return NoiseFloor.white(max(float(np.mean(densities)), 1e-30))

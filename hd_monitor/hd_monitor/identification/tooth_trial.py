@@ -12,20 +12,20 @@ from ..acquisition.record import Record
 from ..errors import ParameterError
 from ..model.parameters import Dynamics
 from ..reducer import Reducer
+from .exploration import signal_level
 from .gauss_newton import Fit, Problem
 from .knowledge import Knowledge
 from .linearisation import Predictor
-from .noise_floor import NoiseFloor
 from .stretch import Stretch, StretchBuilder
 from .unknowns import Unknowns
 
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
 
-LONGEST = 2.0
+LONGEST = 1.5
 """Motion [s] of the oldest and of the newest stretch that a trial looks at: far apart, few samples tell orders."""
 
-_ROUNDS = 5
+_ROUNDS = 4
 
 
 class Lead(NamedTuple):
@@ -134,14 +134,11 @@ class ToothTrial:
             stretches = [builder.build([record], None) for record in self._records()]
         except ParameterError:
             return None  # these teeth's lines are too fast for the sampling rate
-        signal = [
-            2.0 * s.period * float(np.mean(s.transform(s.acceleration[:, None]) ** 2)) / s.fill for s in stretches
-        ]
         problem = Problem(
             stretches=stretches,
             predictor=Predictor(unknowns=self.unknowns, given=self.given, reference_torque=self.reference_torque),
             prior=self.prior,
-            floor=NoiseFloor.white(max(float(np.mean(signal)), 1e-30)),
+            floor=signal_level(stretches),
             active=active,
         )
         try:

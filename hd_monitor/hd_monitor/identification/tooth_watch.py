@@ -13,7 +13,7 @@ from .tooth_trial import Lead
 FIRST_LOOK = 3.4
 """Motion [s] from which tooth numbers are questioned, and before which nothing is named."""
 
-OFTEN, RARE = 1.5, 2.0
+OFTEN, RARE = 1.5, 3.0
 """Factors by which motion must grow between looks while there are less than `YOUNG` seconds of it, and later."""
 
 YOUNG = 10.0
@@ -29,6 +29,8 @@ The second one is for teeth `NEAR` those given, which mimic a tone no better tha
 
 NEAR = 4.5
 """Difference of the tooth numbers."""
+
+_MOST_LATE = 2  # suspects tried once there are more than `YOUNG` seconds
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -88,9 +90,15 @@ class ToothWatch:
             return self
         if not unexplained(self.signal, self.residual):
             return replace(self, rival=None)
-        suspects = tooth_suspects(self.signal, given, harmonics, one_speed=one_speed)
+        suspects: tuple[ToothSuspect, ...]
+        if self.rival is not None and seconds >= YOUNG:
+            suspects = (self.rival,)  # once found, it need only be confirmed now and then
+        else:
+            suspects = tooth_suspects(self.signal, given, harmonics, one_speed=one_speed)
         if not suspects:
             return replace(self, rival=None)
+        if seconds >= YOUNG:
+            suspects = suspects[:_MOST_LATE]
         lead = leads(given, [suspect.reducer for suspect in suspects])
         best = max(range(len(suspects)), key=lambda number: lead[number].log_odds)
         suspect, found = suspects[best], lead[best]

@@ -169,10 +169,10 @@ def test_lines_that_travel_does_not_part_need_more_proof():
 
 def test_looks_get_rare_and_a_suspicion_ends_once_nothing_is_unexplained():
     watch = looked(watching({200: 1.0, 202: 0.5}), Lead(1e3, 2.0), seconds=20.0)
-    assert looked(watch, Lead(0.0, 1.0), seconds=39.0) is watch
+    assert looked(watch, Lead(0.0, 1.0), seconds=59.0) is watch
     assert watch.blocker(RIG).startswith("Check the tooth numbers: lines stand at 200, 202")
     assert "200/202 teeth" in watch.blocker(RIG)
-    cured = looked(replace(watch, residual=spectrum({})), Lead(1e3, 2.0), seconds=41.0)
+    cured = looked(replace(watch, residual=spectrum({})), Lead(1e3, 2.0), seconds=61.0)
     assert cured.rival is None
     assert cured.blocker(RIG) == ""
 
