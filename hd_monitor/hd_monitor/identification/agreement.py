@@ -1,5 +1,6 @@
 """Whether the directions of motion agree on a spline, and in words why not: the sensorless mode's rule of evidence."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -11,6 +12,10 @@ from .pair_evidence import CHANCE, PairEstimate
 
 AGREEMENT = 0.9
 """Confidence that each direction alone must have in the spline that is named."""
+
+
+BETTER_TEETH = math.log(1e4)
+"""Difference of log evidence, odds of 10 000 to 1, by which other teeth must lead; several are compared."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -77,6 +82,31 @@ def pooled_dominance(directions: Sequence[DirectionEvidence]) -> LinePair:
     each = np.array([direction.dominance for direction in directions])
     deviates = norm.ppf(np.clip(each, 1e-12, 1.0 - 1e-12))
     return LinePair(*norm.cdf(deviates.sum(axis=0) / np.sqrt(len(directions))).tolist())
+
+
+def other_teeth(lead: float, pair: LinePair, chances: Sequence[LinePair], given: LinePair) -> tuple[str, ...]:
+    """Say that other tooth numbers fit better, if they do; only both of their lines are evidence, one fits two pairs.
+
+    Parameters
+    ----------
+    lead : float
+        Log evidence of the other teeth less that of those given, summed over the directions.
+    pair : LinePair
+        Orders of the other teeth's lines [cycles per output revolution].
+    chances : sequence of LinePair
+        Probability, by direction, of noise alone making each of them.
+    given : LinePair
+        Orders of the lines of the teeth given.
+    """
+    both = all(min(chance) < CHANCE for chance in zip(*chances, strict=True))
+    if lead < BETTER_TEETH or not both:
+        return ()
+    other, own = (f"{lines.circular_spline:g}/{lines.flexspline:g}" for lines in (pair, given))
+    return (
+        f"Check the tooth numbers: lines stand at {pair.circular_spline:g} and {pair.flexspline:g} cycles per output "
+        f"revolution, where {other} teeth have them but the {own} given do not both; correct "
+        "reducer.flexspline_teeth and reducer.circular_spline_teeth, for with wrong ones no part can be named",
+    )
 
 
 def reasons_against_naming(

@@ -74,6 +74,11 @@ class PairEstimate:
         return np.asarray(along.T @ self.covariance @ along)
 
     @property
+    def log_evidence(self) -> float:
+        """Logarithm of the likelihood ratio against noise alone, less a penalty for the number of lines (BIC)."""
+        return _log_evidence(self.explained, self.freedom, self.phasors.size)
+
+    @property
     def chance(self) -> LinePair:
         """Probability that noise alone makes a line this large (F test against the placebo orders)."""
         return LinePair(*line_chances(self))
@@ -109,9 +114,14 @@ class LineSolution:
     @property
     def log_evidence(self) -> float:
         """Logarithm of the likelihood ratio against noise alone, less a penalty for the number of lines (BIC)."""
-        parameters = 2 * self.phasors.size
-        total = self.freedom + parameters
-        return 0.5 * total * math.log1p(self.explained / self.freedom) - 0.5 * parameters * math.log(total)
+        return _log_evidence(self.explained, self.freedom, self.phasors.size)
+
+
+def _log_evidence(explained: float, freedom: float, lines: int) -> float:
+    """Likelihood ratio's logarithm, the noise floor being unknown, less the penalty for two parameters a line."""
+    parameters = 2 * lines
+    total = freedom + parameters
+    return 0.5 * total * math.log1p(explained / freedom) - 0.5 * parameters * math.log(total)
 
 
 def solve_lines(products: FloatArray, orders: PairOrders) -> LineSolution | None:

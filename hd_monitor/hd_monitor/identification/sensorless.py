@@ -11,7 +11,7 @@ import numpy.typing as npt
 from ..acquisition.record import JointSamples
 from ..reducer import LinePair, Mount
 from ..settings import JointSettings
-from .agreement import DirectionEvidence, reasons_against_naming
+from .agreement import DirectionEvidence, other_teeth, reasons_against_naming
 from .pair_evidence import PairEstimate, estimate_pair
 from .result import Identification, LineEstimate
 from .stroke_sums import Gram, PairOrders, gram_of_stroke, residual_of_stroke
@@ -22,6 +22,9 @@ FloatArray = npt.NDArray[np.float64]
 
 LEAST_SHARE = 0.1
 """Part of the motion that a direction must have to be heard."""
+
+NEIGHBOURS = (-4, -3, -2, -1, 1, 2, 3, 4)
+"""Differences of other tooth numbers that are watched from those given."""
 
 RELEARN = 3.0
 """Growth of the data after which the background is learnt anew."""
@@ -79,8 +82,12 @@ class SensorlessIdentifier:
         self._confidence: float = settings["diagnosis.confidence"]
         reduction = self._reducer.reduction
         cs, fs = self._reducer.output_orders
-        harmonics = range(1, settings["analysis.harmonics"] + 1)
-        self._orders = [PairOrders.around(LinePair(cs, fs), k, (reduction, 2.0 * reduction)) for k in harmonics]
+        motor = (reduction, 2.0 * reduction)
+        self._harmonics = range(1, settings["analysis.harmonics"] + 1)
+        self._orders = [PairOrders.around(LinePair(cs, fs), k, motor) for k in self._harmonics]
+        # Teeth near those given share a line with them, or lie where travel does not part them: they are watched, too.
+        self._neighbours = [LinePair(cs + shift, fs + shift) for shift in NEIGHBOURS]
+        self._orders += [PairOrders.around(pair, 1, motor) for pair in self._neighbours]
         minimum_speed = settings["analysis.minimum_speed"] * 2.0 * np.pi / 60.0 / reduction
         self._cutter = StrokeCutter(settings["input.source"], (cs, fs), minimum_speed)
         self._pooled: deque[_Pooled] = deque()
@@ -202,14 +209,15 @@ class SensorlessIdentifier:
             signal_to_noise=10.0 * float(np.log10(0.5 * total**2 / noise)),
             misfit=float(np.mean([pair.floor for pair in pairs])),
             doubts=self._doubts(LinePair(float(cs), float(fs))),
-            blockers=reasons_against_naming(self._directions, self._reducer.output_orders, self._confidence),
+            blockers=self._other_teeth(groups, pairs)
+            + reasons_against_naming(self._directions, self._reducer.output_orders, self._confidence),
             load_fluctuation=math.nan,
         )
 
     def _lines(self, groups: list[tuple[str, list[_Pooled]]], first: list[PairEstimate]) -> tuple[LineEstimate, ...]:
         """Amplitudes of every pair, root-mean-square over the directions; the first pair's estimates are there."""
         lines = []
-        for number in range(len(self._orders)):
+        for number in range(len(self._harmonics)):
             pairs = first if number == 0 else self._estimates(groups, number)
             if pairs:
                 mean, covariance = _mean_amplitudes(pairs)
@@ -230,6 +238,19 @@ class SensorlessIdentifier:
     def _estimate_group(self, group: list[_Pooled], number: int) -> PairEstimate | None:
         grams = [gram for pooled in group if (gram := pooled.grams[number]) is not None]
         return estimate_pair(grams, self._orders[number])
+
+    def _other_teeth(self, groups: list[tuple[str, list[_Pooled]]], own: list[PairEstimate]) -> tuple[str, ...]:
+        """Say which tooth numbers near those given fit better; empty if none do."""
+        given = sum(estimate.log_evidence for estimate in own)
+        rivals = []
+        for number, pair in enumerate(self._neighbours, start=len(self._harmonics)):
+            found = self._estimates(groups, number)
+            if len(found) == len(own):
+                rivals.append((sum(estimate.log_evidence for estimate in found) - given, pair, found))
+        if not rivals:
+            return ()
+        lead, pair, found = max(rivals, key=lambda rival: rival[0])
+        return other_teeth(lead, pair, [estimate.chance for estimate in found], self._reducer.output_orders)
 
     def _doubts(self, index: LinePair) -> tuple[str, ...]:
         """What a technician should know beside the name."""

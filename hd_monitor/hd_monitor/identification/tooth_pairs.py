@@ -67,8 +67,8 @@ class ToothPairRanking:
         Log odds of the first pair's two lines against a single line: near 0 if only one stands out, or if the travel
         does not part them.
     conclusive : bool
-        True if the first pair's lines stand out, as two and not one, and it leads by odds of at least 1000 to 1, over
-        motion at more than one speed, and it is not where an encoder's errors lie.
+        True if both of the first pair's lines stand out, as two and not one, and it leads by odds of at least 1000 to
+        1, over motion at more than one speed, and it is not where an encoder's errors lie.
     statement : str
         One sentence for a technician.
     travel : float
@@ -153,7 +153,7 @@ def _rank(
     best = ranked[0]
     speed = one_speed(strokes)
     as_pair = _odds_as_pair(best.teeth, scan, parts) if best.lines_found else 0.0
-    clear = best.lines_found > 0 and min(margin, as_pair) >= MARGIN
+    clear = best.lines_found == 2 and min(margin, as_pair) >= MARGIN
     return ToothPairRanking(
         ranked=tuple(ranked),
         margin=margin,
@@ -235,7 +235,7 @@ def _statement(ranked: Sequence[ToothPairEvidence], margin: float, as_pair: floa
     if margin < MARGIN:
         second = f"{ranked[1].teeth.flexspline}/{ranked[1].teeth.circular_spline}"
         why = f"{second} nearly as well (odds {math.exp(margin):.0f} to 1 over {math.degrees(travel):.0f}° of travel)"
-    elif as_pair < MARGIN:
+    elif best.lines_found < 2 or as_pair < MARGIN:
         why = (
             f"a single line explains {math.degrees(travel):.0f}° of travel nearly as well, and may be something else's"
         )

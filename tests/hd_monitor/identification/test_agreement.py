@@ -1,6 +1,12 @@
 import pytest
 
-from hd_monitor.identification.agreement import DirectionEvidence, pooled_dominance, reasons_against_naming
+from hd_monitor.identification.agreement import (
+    BETTER_TEETH,
+    DirectionEvidence,
+    other_teeth,
+    pooled_dominance,
+    reasons_against_naming,
+)
 from hd_monitor.reducer import LinePair
 
 LINES = LinePair(200.0, 202.0)
@@ -68,3 +74,18 @@ def test_a_stronger_line_elsewhere_asks_for_the_teeth():
     assert "stronger line at about 190" in found[0]
     assert "reducer.flexspline_teeth" in found[0]
     assert reasons(direction(rival=190.0), direction()) == ()
+
+
+@pytest.mark.parametrize(
+    ("lead", "chances", "said"),
+    [
+        (BETTER_TEETH + 1.0, [(1e-6, 0.5), (0.2, 1e-6)], True),
+        (BETTER_TEETH - 1.0, [(1e-6, 1e-6), (1e-6, 1e-6)], False),
+        (BETTER_TEETH + 1.0, [(1e-6, 0.5), (1e-6, 0.5)], False),
+    ],
+    ids=["both lines", "little better", "one line"],
+)
+def test_other_teeth_are_suspected_for_both_lines_only(lead, chances, said):
+    reasons = other_teeth(lead, LinePair(200, 202), [LinePair(*pair) for pair in chances], LinePair(198, 200))
+    assert bool(reasons) is said
+    assert all("200/202 teeth" in text and "198/200" in text for text in reasons)

@@ -394,3 +394,18 @@ def test_wrong_teeth_near_by_are_noticed_on_the_real_arm(ur10e):
     other = UR10E | {"reducer__flexspline_teeth": 190, "reducer__circular_spline_teeth": 192}
     blockers = identify(ur10e(LONG, 2), settings_of(**other)).estimate().blockers
     assert any("stronger line at about 200" in reason for reason in blockers)
+
+
+@pytest.mark.parametrize("given", [198, 199, 201, 202])
+def test_teeth_near_the_right_ones_name_no_part(given):
+    rng = np.random.default_rng(4)
+    times = np.arange(0.0, 60.0, 0.01)
+    angle = 1.6 * np.sin(0.5 * times)
+    effort = 5.0 * np.sin(angle) + 0.3 * np.cos(200 * angle) + 0.15 * np.cos(202 * angle + 1.0)
+    effort += 0.1 * rng.standard_normal(times.size)
+    samples = JointSamples(times=times, angle=angle, speed=0.8 * np.cos(0.5 * times), effort=effort)
+    wrong = settings_of(reducer__flexspline_teeth=given, reducer__circular_spline_teeth=given + 2)
+    (first, *_) = identify(samples, wrong).estimate().blockers
+    assert "200/202 teeth" in first
+    right = settings_of(reducer__flexspline_teeth=200, reducer__circular_spline_teeth=202)
+    assert identify(samples, right).estimate().blockers == ()

@@ -43,6 +43,12 @@ def test_one_line_alone_does_not_tell():
     assert "not conclusive" in ranking.statement
 
 
+def test_a_strong_line_with_a_companion_lost_in_noise_does_not_tell():
+    ranking = rank_tooth_pairs(swinging({200: 0.5, 202: 0.002}))
+    assert ranking.ranked[0].lines_found < 2
+    assert not ranking.conclusive
+
+
 def test_noise_alone_does_not_tell():
     for seed in range(4):
         ranking = rank_tooth_pairs(swinging({}, seed=seed))
