@@ -49,6 +49,7 @@ FREQUENCY_KNOWN, DAMPING_KNOWN = 0.005, 0.05
 """Standard deviations of ln fn and ln ζ below which data know them better than the parameters do."""
 
 _SPEED_VARIES = 0.05  # relative standard deviation of the speed
+_TURNED = 0.3  # part of the misfit that may be left once the sensor's sign is turned
 _SECOND_LOOK = 3.5  # s of motion at which the exploration made on the first second or so is repeated, if in doubt
 _POOR = 1.5  # inflation of the variances, by what the fit leaves at the lines, from which other solutions are sought
 _NOMINAL_INDEX = 0.05  # of the larger spline, where an unknown torque leaves the scale open
@@ -146,11 +147,11 @@ class Estimation:
         poor = rest.inflation(self._coverage.span) > _POOR
         self._poor_since = min(self._poor_since, self.seconds) if poor else math.inf
         if self._is_poor(rest):
-            fit = self._turn_sensor(fit)
-            floor, rest = self._rest(fit)
-        if self._is_poor(rest):
             fit = self._look_elsewhere(fit)
             floor, rest = self._rest(fit)
+            if rest.inflation(self._coverage.span) > _POOR:
+                fit = self._turn_sensor(fit)
+                floor, rest = self._rest(fit)
         questioned = self._question(fit)
         if questioned is not fit:
             fit = questioned
@@ -252,23 +253,27 @@ class Estimation:
     def _turn_sensor(self, fit: Fit) -> Fit:
         """Try the sensor's sign the other way round: against that of the torque it is a matter of mounting.
 
-        To first order the opposite sign only turns the phases of all β; the coupling of the lines tells it.
+        To first order the opposite sign only turns the phases of all β; the coupling of the lines tells it. The load's
+        local minima come in either sign, so it is turned only where no load explains the motion as it is.
         """
         u = self._unknowns
         given = self._active & ~u.mask(u.frequency, u.damping, u.delay)
-        opposite = np.where(given, fit.values, 0.0) * np.where(u.mask(u.stiffness), -1.0, 1.0)
-        newest = newest_stretches(self._recent)
-        for stretches in [newest, self._recent] if len(newest) < len(self._recent) else [newest]:
-            as_it_is = self._problem(stretches, self._prior).solve(fit.values, rounds=_FEW_ROUNDS)
-            mirrored = replace(self._problem([s.mirrored() for s in stretches], self._prior), active=given)
-            turned = mirrored.solve(opposite, rounds=_ROUNDS)
-            if turned.cost >= as_it_is.cost:
-                return fit  # the newest stretches alone may err, but spare the effort where they are clear
+        turned = [stretch.mirrored() for stretch in self._recent]
+        start = np.where(given, fit.values, 0.0) * np.where(u.mask(u.stiffness), -1.0, 1.0)
+        mirrored = replace(self._problem(turned, self._prior), active=given)
+        small, best = explore_newest(mirrored, load_starts(u, start, thorough=True), rounds=_ROUNDS)
+        as_it_is = replace(small, stretches=newest_stretches(self._recent))
+        if not is_better(as_it_is, best, fit.values):
+            return fit
+        kept = self._recent, self._active, self._learnt, self._fitted_anew
+        _, rest = self._rest(fit)
+        self._recent, self._active = turned, given
+        other = self._follow(self._anew(), small, [best.values], _ROUNDS)
+        if self._rest(other)[1].misfit > _TURNED * rest.misfit:
+            self._recent, self._active, self._learnt, self._fitted_anew = kept
+            return fit
         self._mounting = -self._mounting
-        self._recent = [stretch.mirrored() for stretch in self._recent]
-        self._active = given
-        self._anew()
-        return turned
+        return other
 
     def _look_elsewhere(self, fit: Fit) -> Fit:
         """Try other solutions on the newest stretches: the fit leaves more at the lines than noise could.
