@@ -41,9 +41,9 @@ def test_all_betas_reach_the_bound_and_report_it(found):
     for spline in ("circular_spline", "flexspline"):
         ratio = found[f"{spline} β"]
         assert 1.0 - 3.0 * ratio.controlled.std < ratio.controlled.value < 1.05 + 3.0 * ratio.controlled.std
-        # the reported variance hardly depends on the noise: by 2 % from run to run
-        assert ratio.reported == pytest.approx(1.0, abs=0.05)
-        assert found[f"{spline} index"].reported == pytest.approx(1.0, abs=0.05)
+        # the floor's own chance moves a run's reported variance by 7 %, so the median of 25 runs by 2 %; centre 1.035
+        for quantity in ("index", "β"):
+            assert 0.97 < found[f"{spline} {quantity}"].reported < 1.10
 
 
 def test_the_bounds_simulation_is_the_models():
