@@ -56,8 +56,10 @@ _NOMINAL_INDEX = 0.05  # of the larger spline, where an unknown torque leaves th
 _SLIP = 0.5  # of the top speed, by which velocities may differ from the change of the positions (root mean square)
 _ROUNDS, _FEW_ROUNDS = 8, 4
 _MOVED = 3.0  # standard deviations by which values may move before earlier stretches are linearised anew
-_EARLY = 6.0  # s of poor fits up to which a look for other solutions is soon followed by a thorough one
-_SOON, _LATE = 2.0, 5.0  # factors by which the time of poor fits grows between such looks, at first and later
+_YOUNG = 10.0  # s of motion before which a look for other solutions tries all starts
+_EARLY = 4.0  # s of poor fits up to which such a look is soon followed by another one
+_SOON, _LATE = 2.0, 6.0  # factors by which the time of poor fits grows between such looks, at first and later
+_LEAST_AGE = 2.0  # s of poor fits that a look counts for at least
 _APART = 1.2  # factor by which all motion grows between them, if fits are poor now and then
 
 
@@ -248,7 +250,7 @@ class Estimation:
         if self._explored < self._poor_since:
             return self.seconds > _APART * self._explored  # what was right so far is right no more
         looked, age = self._explored - self._poor_since, self.seconds - self._poor_since
-        return age > (_SOON if looked < _EARLY else _LATE) * max(looked, _SECOND_LOOK)
+        return age > (_SOON if looked < _EARLY else _LATE) * max(looked, _LEAST_AGE)
 
     def _turn_sensor(self, fit: Fit) -> Fit:
         """Try the sensor's sign the other way round: against that of the torque it is a matter of mounting.
@@ -287,7 +289,7 @@ class Estimation:
         lag = self._coverage.speed_varies
         if lag:
             self._active = self._active | u.mask(u.delay)
-        thorough, self._explored = self._explored < self._poor_since + _EARLY, self.seconds
+        thorough, self._explored = self.seconds < _YOUNG, self.seconds
         starts = load_starts(u, np.where(self._active, fit.values, 0.0), thorough=thorough)
         starts += other_starts(u, frequency=self._refine, delay=lag, thorough=thorough)
         small, best = explore_newest(self._problem(self._recent, self._prior), starts, rounds=_ROUNDS)
