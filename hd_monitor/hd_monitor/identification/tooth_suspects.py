@@ -24,7 +24,7 @@ CHANCE = 1e-6
 APART = 0.75
 """Output revolutions from which the two lines of the first pair are looked for as two: half a one more than Fourier."""
 
-SHARE = 0.03
+SHARE = 0.02
 """Part of the largest line that an unexplained one must have to matter."""
 
 MOTOR_REACH = 4

@@ -91,11 +91,13 @@ class ToothTrial:
 
         The likelihood is that of white noise whose variance is at its own best, over the band that all fits look at.
         """
-        own = self._fit(given, self.active, None)
         # what given teeth need to make up for being wrong, another resonance say, would only lead others astray
         u = self.unknowns
         plain = self.active & ~u.mask(u.frequency, u.damping, u.delay)
         fits = [self._fit(reducer, plain, self._starts()) for reducer in others]
+        # the same chance for the given ones: their best values so far may be those of a local minimum
+        both = [self._fit(given, self.active, None), self._fit(given, plain, self._starts())]
+        own = min((fit for fit in both if fit is not None), key=_level, default=None)
         known = [fit for fit in fits if fit is not None]
         if own is None or not known:
             return (Lead(-math.inf, 0.0),) * len(others)
@@ -169,6 +171,12 @@ def _cut(stretch: Stretch, part: slice) -> Record:
         speed=stretch.speed[part],
         torque=stretch.at_steps.torque[:: stretch.substeps][part],
     )
+
+
+def _level(fit: Fit) -> float:
+    """Mean square that a fit leaves."""
+    power, freedom = _power(fit, math.inf)
+    return power / freedom
 
 
 def _power(fit: Fit, band: float) -> tuple[float, float]:

@@ -7,7 +7,7 @@ from ..model.parameters import Dynamics
 from ..reducer import Reducer
 from .gauss_newton import Fit
 from .order_spectrum import OrderSpectrum
-from .tooth_suspects import ToothSuspect, tooth_suspects, unexplained
+from .tooth_suspects import APART, ToothSuspect, tooth_suspects, unexplained
 from .tooth_trial import Lead
 
 FIRST_LOOK = 3.4
@@ -22,10 +22,11 @@ YOUNG = 10.0
 PROOF = 50.0
 """Logarithm of the likelihood ratio by which other teeth must beat those given."""
 
-GAIN, GAIN_NEAR = 1.5, 1.15
+GAIN, GAIN_NEAR, GAIN_APART = 1.5, 1.15, 1.05
 """Variance left with the given teeth over that left with others, from which these are believed even where their lines
 are not found one by one: a tone, smeared over the orders by a changing speed, can be mimicked in part, but not so far.
-The second one is for teeth `NEAR` those given, which mimic a tone no better than these do."""
+The second one is for teeth `NEAR` those given, which mimic a tone no better than these do, the third one for the same
+where travel parts the two lines."""
 
 NEAR = 4.5
 """Difference of the tooth numbers."""
@@ -103,7 +104,8 @@ class ToothWatch:
         best = max(range(len(suspects)), key=lambda number: lead[number].log_odds)
         suspect, found = suspects[best], lead[best]
         apart = abs(suspect.reducer.output_orders.circular_spline - given.output_orders.circular_spline)
-        gain = 1.0 if suspect.evident else GAIN_NEAR if apart < NEAR else GAIN
+        near = GAIN_APART if self.signal.turns > APART else GAIN_NEAR
+        gain = 1.0 if suspect.evident else near if apart < NEAR else GAIN
         proven = found.log_odds > PROOF and found.gain > gain
         return replace(self, looked=seconds, rival=suspect if proven else None)
 

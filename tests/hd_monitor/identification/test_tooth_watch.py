@@ -140,7 +140,7 @@ def test_noise_alone_leaves_nothing_unexplained():
     signal = spectrum({160: 1.0})
     assert not any(unexplained(signal, spectrum({}, seed=seed)) for seed in range(40))
     assert unexplained(signal, spectrum({200: 0.1}))
-    assert not unexplained(signal, spectrum({200: 0.02}))
+    assert not unexplained(signal, spectrum({200: 0.01}))
     assert not unexplained(spectrum({160: 1.0}, turns=0.1), spectrum({200: 0.5}, turns=0.1))
 
 
