@@ -27,9 +27,11 @@ from .knowledge import Knowledge
 from .linearisation import Predictor
 from .misfit import LineResidual
 from .noise_floor import NoiseFloor
+from .preparation import Preparation
 from .refinement import Score, score
 from .result import Identification
-from .stretch import Stretch, StretchBuilder
+from .schedule import POOR, SECOND_LOOK, Schedule
+from .stretch import Stretch
 from .tooth_trial import ToothTrial
 from .tooth_watch import ToothWatch
 from .unknowns import Unknowns
@@ -50,17 +52,10 @@ FREQUENCY_KNOWN, DAMPING_KNOWN = 0.005, 0.05
 
 _SPEED_VARIES = 0.05  # relative standard deviation of the speed
 _TURNED = 0.3  # part of the misfit that may be left once the sensor's sign is turned
-_SECOND_LOOK = 3.5  # s of motion at which the exploration made on the first second or so is repeated, if in doubt
-_POOR = 1.5  # inflation of the variances, by what the fit leaves at the lines, from which other solutions are sought
-_NOMINAL_INDEX = 0.05  # of the larger spline, where an unknown torque leaves the scale open
 _SLIP = 0.5  # of the top speed, by which velocities may differ from the change of the positions (root mean square)
 _ROUNDS, _FEW_ROUNDS = 8, 4
 _MOVED = 3.0  # standard deviations by which values may move before earlier stretches are linearised anew
 _YOUNG = 10.0  # s of motion before which a look for other solutions tries all starts
-_EARLY = 4.0  # s of poor fits up to which such a look is soon followed by another one
-_SOON, _LATE = 2.0, 6.0  # factors by which the time of poor fits grows between such looks, at first and later
-_LEAST_AGE = 2.0  # s of poor fits that a look counts for at least
-_APART = 1.2  # factor by which all motion grows between them, if fits are poor now and then
 
 
 class Estimation:
@@ -85,29 +80,19 @@ class Estimation:
         self._reducer = settings.reducer
         self._refine: bool = settings["dynamics.refine"]
         self._memory: float = settings["analysis.memory"]
-        self._load_torque: float = settings["load.torque"] if settings["load.source"] in ("auto", "parameter") else 0.0
         self._unknowns = u = Unknowns(harmonics=settings["analysis.harmonics"], load_orders=LOAD_ORDERS)
-        self._builder = StretchBuilder(
-            reducer=self._reducer,
-            harmonics=u.harmonics,
-            load_orders=LOAD_ORDERS,
-            natural_frequency=self._given.natural_frequency,
-            inertial=settings["input.source"] == "imu",
-        )
-        self._std = _given_std(u)
+        self._std = u.given_std()
         self._prior = Knowledge.gaussian(self._std)
+        self._preparation = Preparation(settings, u, self._prior)
         self._learnt = Knowledge.none(u.size)
         self._predictor: Predictor | None = None
-        self._nominal_torque: float | None = None
         self._values = u.zero()
         self._active = u.mask(u.stiffness, u.load, u.inertia)
         self._recent: list[Stretch] = []
-        self._mounting = 1.0
         self._fitted_anew = 0.0
         self._floor: NoiseFloor | None = None
         self._line_residual = LineResidual.empty(u.harmonics)
-        self._explored = 0.0
-        self._poor_since = math.inf
+        self._schedule = Schedule()
         self._coverage = Coverage()
         self._teeth = ToothWatch()
         self._conclusions = Conclusions(settings, u)
@@ -123,7 +108,7 @@ class Estimation:
     def take(self, records: Sequence[Record]) -> None:
         """Use a stretch, given as records that follow each other; one that defies all arithmetic is left out."""
         kept = copy.copy(self)
-        kept._recent = list(self._recent)
+        kept._recent, kept._preparation = list(self._recent), copy.copy(self._preparation)
         try:
             with np.errstate(over="raise", divide="raise", invalid="raise"):
                 self._use(records)
@@ -132,13 +117,15 @@ class Estimation:
             self.unusable = str(error)
 
     def _use(self, records: Sequence[Record]) -> None:
-        stretch = self._build(records)
+        stretch = self._preparation.build(records)
         values = stretch.acceleration[stretch.used]
         slip = np.diff(stretch.angle) / stretch.period - 0.5 * (stretch.speed[1:] + stretch.speed[:-1])
         if float(np.mean(slip**2)) > (_SLIP * float(np.abs(stretch.speed).max())) ** 2:
             raise ParameterError("positions and velocities of the joint contradict each other: check joint_states")
         if values.size < 4 * self._unknowns.size or float(np.ptp(values)) == 0.0:
             return
+        if self._preparation.nominal_torque is not None:
+            self._active = self._active | self._unknowns.mask(self._unknowns.torque)
         self.seconds += stretch.duration
         self._coverage = self._coverage.plus(stretch)
         self._recent.append(stretch)
@@ -146,12 +133,13 @@ class Estimation:
             self._recent.pop(0)
         fit = self._fit()
         floor, rest = self._rest(fit)
-        poor = rest.inflation(self._coverage.span) > _POOR
-        self._poor_since = min(self._poor_since, self.seconds) if poor else math.inf
-        if self._is_poor(rest):
+        inflation = rest.inflation(self._coverage.span)
+        self._schedule = self._schedule.after(inflation, self.seconds)
+        hopeless = self._teeth.rival is not None and self._schedule.looked >= SECOND_LOOK  # with the wrong teeth
+        if not hopeless and self._schedule.is_due(inflation, self.seconds):
             fit = self._look_elsewhere(fit)
             floor, rest = self._rest(fit)
-            if rest.inflation(self._coverage.span) > _POOR:
+            if rest.inflation(self._coverage.span) > POOR:
                 fit = self._turn_sensor(fit)
                 floor, rest = self._rest(fit)
         questioned = self._question(fit)
@@ -164,39 +152,9 @@ class Estimation:
         self._conclude(fit)
         self.age(sum(item.stretch.duration for item in fit.evidence))
 
-    # Preparation ---------------------------------------------------------------------------------------------------
-
-    def _build(self, records: Sequence[Record]) -> Stretch:
-        """Make a stretch, with the sensor's sign as found so far."""
-        stretch = self._build_as_mounted(records)
-        return stretch if self._mounting > 0.0 else stretch.mirrored()
-
-    def _build_as_mounted(self, records: Sequence[Record]) -> Stretch:
-        """Make a stretch; where nobody knows the torque, a nominal one stands for it."""
-        if np.isfinite(records[0].torque).all():
-            return self._builder.build(records, None)
-        if self._load_torque:
-            return self._builder.build(records, self._load_torque)
-        if self._nominal_torque is None:
-            unit = self._given.stiffness * 1e-3  # a wind-up of 1 mrad
-            u, stretch = self._unknowns, self._builder.build(records, unit)
-            problem = Problem(
-                stretches=[stretch],
-                predictor=Predictor(unknowns=u, given=self._given, reference_torque=unit),
-                prior=self._prior,
-                floor=signal_level([stretch]),
-                active=u.mask(u.stiffness),
-            )
-            step = problem.at(u.zero()).step
-            size = max(float(np.linalg.norm(step[part])) for part in (u.circular_spline, u.flexspline))
-            self._nominal_torque = unit * max(size, 1e-6) / _NOMINAL_INDEX
-            self._active = self._active | u.mask(u.torque)
-        return self._builder.build(records, self._nominal_torque)
-
     def _problem(self, stretches: Sequence[Stretch], prior: Knowledge) -> Problem:
         if self._predictor is None:
-            torque = np.concatenate([s.at_steps.torque for s in stretches])
-            level = max(float(np.sqrt(np.mean(torque**2))), 0.1 * abs(self._load_torque), 1e-9 * self._given.stiffness)
+            level = self._preparation.reference_torque(stretches)
             self._predictor = Predictor(unknowns=self._unknowns, given=self._given, reference_torque=level)
         return Problem(
             stretches=stretches,
@@ -229,7 +187,7 @@ class Estimation:
 
     def _explore(self, problem: Problem, starts: Sequence[FloatArray], *, rounds: int) -> Fit:
         """Solve from several starts on the newest data, then on all."""
-        self._explored = self.seconds
+        self._schedule = self._schedule.with_look(self.seconds)
         small, best = explore_newest(problem, starts, rounds=rounds)
         return self._follow(problem, small, [best.values, starts[0]] if len(starts) > 1 else [best.values], rounds)
 
@@ -239,18 +197,6 @@ class Estimation:
         whole = replace(problem, floor=small.floor)
         fit = min((whole.solve(values, rounds=rounds) for values in candidates), key=lambda f: f.cost)
         return replace(problem, floor=fit.floor).solve(fit.values, rounds=rounds)
-
-    def _is_poor(self, rest: LineResidual) -> bool:
-        """Whether so much is left at the lines that other solutions should be looked for, as often as effort allows."""
-        inflation = rest.inflation(self._coverage.span)
-        if self._explored < _SECOND_LOOK <= self.seconds:
-            return inflation > 1.0
-        if self._explored < _SECOND_LOOK or self._teeth.rival is not None or not inflation > _POOR:
-            return False  # too early; or the teeth are wrong, and so would be every solution
-        if self._explored < self._poor_since:
-            return self.seconds > _APART * self._explored  # what was right so far is right no more
-        looked, age = self._explored - self._poor_since, self.seconds - self._poor_since
-        return age > (_SOON if looked < _EARLY else _LATE) * max(looked, _LEAST_AGE)
 
     def _turn_sensor(self, fit: Fit) -> Fit:
         """Try the sensor's sign the other way round: against that of the torque it is a matter of mounting.
@@ -274,7 +220,7 @@ class Estimation:
         if self._rest(other)[1].misfit > _TURNED * rest.misfit:
             self._recent, self._active, self._learnt, self._fitted_anew = kept
             return fit
-        self._mounting = -self._mounting
+        self._preparation.mounting *= -1.0
         return other
 
     def _look_elsewhere(self, fit: Fit) -> Fit:
@@ -289,7 +235,7 @@ class Estimation:
         lag = self._coverage.speed_varies
         if lag:
             self._active = self._active | u.mask(u.delay)
-        thorough, self._explored = self.seconds < _YOUNG, self.seconds
+        thorough, self._schedule = self.seconds < _YOUNG, self._schedule.with_look(self.seconds)
         starts = load_starts(u, np.where(self._active, fit.values, 0.0), thorough=thorough)
         starts += other_starts(u, frequency=self._refine, delay=lag, thorough=thorough)
         small, best = explore_newest(self._problem(self._recent, self._prior), starts, rounds=_ROUNDS)
@@ -332,7 +278,7 @@ class Estimation:
             reference_torque=self._predictor.reference_torque,
             values=fit.values,
             load_starts=(0.0, START_LOADS[0]),
-            inertial=self._builder.inertial,
+            inertial=self._preparation.inertial,
         )
         self._teeth = self._teeth.after(fit, self._given, anew=self._fitted_anew == self.seconds).look(
             trial.leads,
@@ -382,20 +328,7 @@ class Estimation:
             recent=self._recent,
             evidence=fit.evidence,
             floor=self._floor or fit.floor,
-            relative=self._nominal_torque is not None,
+            relative=self._preparation.nominal_torque is not None,
         )
         if blocker := self._teeth.blocker(self._reducer):
             self.result = replace(self.result, blockers=(blocker, *self.result.blockers))
-
-
-def _given_std(unknowns: Unknowns) -> FloatArray:
-    """Standard deviations of the unknowns before any data."""
-    std = np.empty(unknowns.size)
-    std[unknowns.stiffness] = 0.3
-    std[unknowns.load] = 2.0
-    std[unknowns.frequency] = 0.1
-    std[unknowns.damping] = 0.5
-    std[unknowns.torque] = 1.5
-    std[unknowns.delay] = 0.01
-    std[unknowns.inertia] = 0.7
-    return std

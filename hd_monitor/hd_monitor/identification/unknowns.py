@@ -94,6 +94,18 @@ class Unknowns:
             mask[place] = True
         return mask
 
+    def given_std(self) -> FloatArray:
+        """Standard deviations of the unknowns before any data, shape (unknowns,)."""
+        std = np.empty(self.size)
+        std[self.stiffness] = 0.3
+        std[self.load] = 2.0
+        std[self.frequency] = 0.1
+        std[self.damping] = 0.5
+        std[self.torque] = 1.5
+        std[self.delay] = 0.01
+        std[self.inertia] = 0.7
+        return std
+
     def phasors(self, values: FloatArray, part: slice) -> ComplexArray:
         """Complex phasors of one of the parts, shape (harmonics,) or (load orders,)."""
         real, imaginary = np.split(values[part], 2)
