@@ -1,4 +1,4 @@
-"""Looks for other solutions: soon at first, ever more rarely where nothing helps, at once where a good fit turns bad."""
+"""Looks for other solutions: soon at first, ever more rarely where nothing helps, at once where a fit turns bad."""
 
 import numpy as np
 
