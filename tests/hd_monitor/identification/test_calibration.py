@@ -65,7 +65,7 @@ def test_the_bound_for_stiffness_alone_is_that_of_the_harmonic_balance():
     samples = int(ec.DURATION * ec.RATE)
     only = np.zeros(eb.SIZE, dtype=np.bool_)
     only[eb.STIFFNESS] = True
-    slope = constant_speed(model.reducer, ec.SPEED)(np.array(1.0))
+    slope = float(np.asarray(constant_speed(model.reducer, ec.SPEED)(np.array(1.0))))
     bound = eb.bound(model, [slope, 0.0], samples=samples, rate=ec.RATE, noise=ec.NOISE, unknown=only)
 
     def lines(change):
