@@ -9,11 +9,12 @@ import numpy as np
 import numpy.typing as npt
 
 from ..acquisition.record import JointSamples
-from ..reducer import LinePair, Mount
+from ..reducer import LinePair
 from ..settings import JointSettings
 from .agreement import DirectionEvidence, other_teeth, reasons_against_naming
 from .pair_evidence import PairEstimate, estimate_pair
 from .result import Identification, LineEstimate
+from .sensorless_doubts import STILL, complaints_about, doubts_about
 from .stroke_sums import Gram, PairOrders, gram_of_stroke, residual_of_stroke
 from .strokes import Stroke, StrokeCutter, one_speed
 from .whitening import learn_whitening
@@ -28,9 +29,6 @@ NEIGHBOURS = (-4, -3, -2, -1, 1, 2, 3, 4)
 
 RELEARN = 3.0
 """Growth of the data after which the background is learnt anew."""
-
-
-STILL = "The signal does not change at all while the joint turns: check what the driver publishes"
 
 
 @dataclass(slots=True, eq=False)
@@ -119,8 +117,11 @@ class SensorlessIdentifier:
         if self._stale:
             self._latest = self._identify()
             self._stale = False
-        if self._latest is None and self._complaints():
-            return self._nothing(self._complaints())
+        if self._latest is None:
+            complaints = complaints_about(
+                self._settings["input.source"], messages=self._messages, usable=self._usable, too_fast=self._too_fast
+            )
+            return self._nothing(complaints) if complaints else None
         return self._latest
 
     def finish(self) -> Identification | None:
@@ -208,7 +209,12 @@ class SensorlessIdentifier:
             samples=sum(pair.rows for pair in pairs),
             signal_to_noise=10.0 * float(np.log10(0.5 * total**2 / noise)),
             misfit=float(np.mean([pair.floor for pair in pairs])),
-            doubts=self._doubts(LinePair(float(cs), float(fs))),
+            doubts=doubts_about(
+                LinePair(float(cs), float(fs)),
+                self._reducer,
+                one_speed=one_speed(pooled.stroke for pooled in self._pooled),
+                too_fast=self._too_fast,
+            ),
             blockers=self._other_teeth(groups, pairs)
             + reasons_against_naming(self._directions, self._reducer.output_orders, self._confidence),
             load_fluctuation=math.nan,
@@ -252,43 +258,10 @@ class SensorlessIdentifier:
         lead, pair, found = max(rivals, key=lambda rival: rival[0])
         return other_teeth(lead, pair, [estimate.chance for estimate in found], self._reducer.output_orders)
 
-    def _doubts(self, index: LinePair) -> tuple[str, ...]:
-        """What a technician should know beside the name."""
-        doubts = []
-        # The line of the spline that stands still has exactly the order 2 of the wave generator.
-        at_order_two = index.circular_spline if self._reducer.mount is Mount.CIRCULAR_SPLINE_FIXED else index.flexspline
-        if at_order_two == max(index):
-            doubts.append(
-                "the larger line comes exactly twice per wave-generator revolution, as ripple of the motor and a bent "
-                "shaft do: check the motor too"
-            )
-        speed = one_speed(pooled.stroke for pooled in self._pooled)
-        if np.isfinite(speed):
-            lower, upper = (order * speed / math.tau for order in self._reducer.output_orders)
-            doubts.append(
-                f"the joint turned at one speed: a fixed frequency of the machine at {lower:.1f} or {upper:.1f} Hz "
-                "would look the same"
-            )
-        if self._cutter.too_fast > 0.1 * self._cutter.turning:
-            doubts.append(
-                f"{self._cutter.too_fast / self._cutter.turning:.0%} of the motion was too fast for the rate of the "
-                "joint states and was left out"
-            )
-        return tuple(doubts)
-
-    def _complaints(self) -> tuple[str, ...]:
-        """What keeps the input from ever yielding a stroke, in words; empty if nothing does so far."""
-        source = self._settings["input.source"]
-        field = "effort" if source == "joint_effort" else "velocity"
-        other = "joint_velocity" if source == "joint_effort" else "joint_effort"
-        if self._messages >= 100 and not self._usable:
-            return (f"The joint states carry no {field}: set input.source to {other}, or have the driver publish it",)
-        if self._cutter.too_fast > 0.9 * self._cutter.turning > 0.0:
-            return (
-                "The joint turns too fast for the rate of its joint states, the lines lie above half of it: "
-                "publish them faster, or let the joint turn slower once in a while",
-            )
-        return ()
+    @property
+    def _too_fast(self) -> float:
+        """Part of the motion that was too fast for the rate of the joint states."""
+        return self._cutter.too_fast / self._cutter.turning if self._cutter.turning > 0.0 else 0.0
 
     @staticmethod
     def _nothing(reasons: tuple[str, ...]) -> Identification:
