@@ -50,7 +50,6 @@ CONTRADICTION = 4.5
 FREQUENCY_KNOWN, DAMPING_KNOWN = 0.005, 0.05
 """Standard deviations of ln fn and ln ζ below which data know them better than the parameters do."""
 
-_SPEED_VARIES = 0.05  # relative standard deviation of the speed
 _TURNED = 0.3  # part of the misfit that may be left once the sensor's sign is turned
 _SLIP = 0.5  # of the top speed, by which velocities may differ from the change of the positions (root mean square)
 _ROUNDS, _FEW_ROUNDS = 8, 4
@@ -170,7 +169,10 @@ class Estimation:
         """Fit the newest stretch on top of what is learnt; every now and then all anew, while all are at hand."""
         young = self.seconds <= WINDOW
         if self._floor is None:
-            return self._explore(self._anew(), [self._values], rounds=_FEW_ROUNDS)
+            self._schedule = self._schedule.with_look(self.seconds)
+            problem = self._anew()
+            small, best = explore_newest(problem, [self._values], rounds=_FEW_ROUNDS)
+            return self._follow(problem, small, [best.values], _FEW_ROUNDS)
         if young and self.seconds >= 2.0 * self._fitted_anew:
             return self._anew().solve(self._values, rounds=_ROUNDS)
         fit = self._problem(self._recent[-1:], self._prior + self._learnt).solve(self._values, rounds=3)
@@ -184,12 +186,6 @@ class Estimation:
         self._fitted_anew = self.seconds
         self._learnt = Knowledge.none(self._unknowns.size)
         return self._problem(self._recent, self._prior)
-
-    def _explore(self, problem: Problem, starts: Sequence[FloatArray], *, rounds: int) -> Fit:
-        """Solve from several starts on the newest data, then on all."""
-        self._schedule = self._schedule.with_look(self.seconds)
-        small, best = explore_newest(problem, starts, rounds=rounds)
-        return self._follow(problem, small, [best.values, starts[0]] if len(starts) > 1 else [best.values], rounds)
 
     @staticmethod
     def _follow(problem: Problem, small: Problem, candidates: Sequence[FloatArray], rounds: int) -> Fit:
