@@ -48,6 +48,7 @@ class Identifier:
         self._estimation = Estimation(settings)
         self._sparing = sparing
         self._skip = 0.0
+        self._passed = 0.0
 
     def add(self, record: Record) -> None:
         """Take the next record."""
@@ -55,8 +56,11 @@ class Identifier:
             # The indexes are known well: what lies between the stretches looked at makes the evidence older, no more
             if float(np.abs(record.speed).max(initial=0.0)) >= self._minimum_speed:
                 self._skip -= len(record) * record.period
-                self._estimation.age(len(record) * record.period)
+                self._passed += len(record) * record.period
             return
+        if self._passed:
+            self._estimation.age(self._passed)
+            self._passed = 0.0
         for stretch in self._collector.add(record, self._stretch_length):
             self._estimation.take(stretch)
             if self._sparing and self._estimation.well_known:

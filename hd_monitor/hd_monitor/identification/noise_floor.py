@@ -97,20 +97,22 @@ class NoiseFloor:
         if not self.freedom.sum() > 0.0:
             raise ValueError("no residual has been seen, so the noise floor is unknown; call updated() first")
         known = self.freedom > 0.0
-        power, freedom, logarithm = self.power[known], self.freedom[known], np.log2(_CENTRES[known])
-        weight = np.ones(power.size)
+        # Plain numbers: there are few bands, and an array for each step would cost more than all of them
+        freedoms, powers = self.freedom[known].tolist(), self.power[known].tolist()
+        logarithms, weights = np.log2(_CENTRES[known]).tolist(), [1.0] * len(powers)
         # pool the poorest band with its poorer neighbour until every band stands on enough residual
-        while power.size > 1 and freedom.min() < _FREEDOM:
-            poorest = int(np.argmin(freedom))
-            left = poorest - 1 if poorest == power.size - 1 else poorest
-            if 0 < poorest < power.size - 1 and freedom[poorest - 1] < freedom[poorest + 1]:
+        while len(powers) > 1 and (least := min(freedoms)) < _FREEDOM:
+            poorest = freedoms.index(least)
+            left = poorest - 1 if poorest == len(powers) - 1 else poorest
+            if 0 < poorest < len(powers) - 1 and freedoms[poorest - 1] < freedoms[poorest + 1]:
                 left = poorest - 1
-            logarithm[left] = np.average(logarithm[left : left + 2], weights=weight[left : left + 2])
-            for values in (power, freedom, weight):
+            share = weights[left + 1] / (weights[left] + weights[left + 1])
+            logarithms[left] += share * (logarithms[left + 1] - logarithms[left])
+            for values in (powers, freedoms, weights):
                 values[left] += values[left + 1]
-            logarithm, power, freedom, weight = (
-                np.delete(values, left + 1) for values in (logarithm, power, freedom, weight)
-            )
+            for values in (logarithms, powers, freedoms, weights):
+                del values[left + 1]
+        power, freedom, logarithm = np.array(powers), np.array(freedoms), np.array(logarithms)
         lowest = max(_LOWEST_DENSITY * float(power.sum()), 1e-300)
         # with the variance estimated the error is Student's, whose variance is freedom / (freedom - 2) larger
         return logarithm, np.log(np.maximum(power / np.maximum(freedom - 2.0, 0.5 * freedom), lowest))
