@@ -1,6 +1,7 @@
 """Spectrum of a vibration over orders, cycles per output revolution, summed up cheaply as the joint turns."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -52,23 +53,6 @@ class OrderSpectrum:
     lowest: float = math.inf
     highest: float = -math.inf
 
-    def plus(self, stretch: Stretch, dynamics: Dynamics) -> "OrderSpectrum":
-        """Add a stretch.
-
-        Its samples pass a filter that turns back the resonator's phase: past the resonance a line's phase is reversed,
-        so that without it the two sides of a speed ramp would cancel.
-        """
-        values = _equalised(_levelled(stretch), stretch.period, dynamics)
-        used = stretch.used
-        place = np.floor(np.mod(stretch.angle[used] / math.tau, TURNS) * PER_TURN).astype(np.intp) % self.sums.size
-        return OrderSpectrum(
-            sums=self.sums + np.bincount(place, values[used], self.sums.size),
-            counts=self.counts + np.bincount(place, minlength=self.sums.size),
-            power=self.power + float(values[used] @ values[used]),
-            lowest=min(self.lowest, float(stretch.angle.min())),
-            highest=max(self.highest, float(stretch.angle.max())),
-        )
-
     def faded(self, keep: float) -> "OrderSpectrum":
         """Return the sums of data that count `keep` times."""
         return OrderSpectrum(
@@ -113,23 +97,49 @@ class OrderSpectrum:
         return np.block([[lines, column[:, None]], [column[None, :], np.array([[self.power]])]])
 
 
-def _levelled(stretch: Stretch) -> FloatArray:
-    """Samples less slow motion; unlike the fit's they keep all tones: at one speed these may be other teeth's lines."""
+def with_stretch(
+    spectra: Sequence[OrderSpectrum], stretch: Stretch, signals: Sequence[FloatArray], dynamics: Dynamics
+) -> tuple[OrderSpectrum, ...]:
+    """Add signals [rad/s²] along a stretch, one to each spectrum.
+
+    They pass a filter that turns back the resonator's phase: past the resonance a line's phase is reversed, so that
+    without it the two sides of a speed ramp would cancel.
+    """
+    used = stretch.used
+    place = np.floor(np.mod(stretch.angle[used] / math.tau, TURNS) * PER_TURN).astype(np.intp) % (TURNS * PER_TURN)
+    counts = np.bincount(place, minlength=TURNS * PER_TURN)
+    lowest, highest = float(stretch.angle.min()), float(stretch.angle.max())
+    added = _equalised(_levelled(stretch, np.stack(signals)), stretch.period, dynamics)[:, used]
+    return tuple(
+        OrderSpectrum(
+            sums=spectrum.sums + np.bincount(place, values, spectrum.sums.size),
+            counts=spectrum.counts + counts,
+            power=spectrum.power + float(values @ values),
+            lowest=min(spectrum.lowest, lowest),
+            highest=max(spectrum.highest, highest),
+        )
+        for spectrum, values in zip(spectra, added, strict=True)
+    )
+
+
+def _levelled(stretch: Stretch, signals: FloatArray) -> FloatArray:
+    """Signals less slow motion; unlike the fit's they keep all tones: at one speed these may be other teeth's lines."""
     degree = 3 + math.ceil(_SLOW * stretch.duration)
     columns = np.polynomial.legendre.legvander(np.linspace(-1.0, 1.0, len(stretch)), degree)
     own = own_acceleration(stretch.speed, stretch.period)
     if float(np.ptp(own)) > 0.0:
         columns = np.concatenate([columns, own[:, None] / np.linalg.norm(own)], axis=1)
     columns = columns * stretch.used[:, None]
-    fit = np.linalg.lstsq(columns, stretch.acceleration * stretch.used, rcond=1e-10)[0]
-    return np.asarray((stretch.acceleration - columns @ fit) * stretch.used)
+    fit = np.linalg.lstsq(columns, (signals * stretch.used).T, rcond=1e-10)[0]
+    return np.asarray((signals - (columns @ fit).T) * stretch.used)
 
 
-def _equalised(values: FloatArray, period: float, dynamics: Dynamics) -> FloatArray:
-    """Signal with the resonator's phase turned back, its spectrum's magnitude as it was."""
-    length = fft.next_fast_len(2 * values.size, real=True)
+def _equalised(signals: FloatArray, period: float, dynamics: Dynamics) -> FloatArray:
+    """Signals with the resonator's phase turned back, the magnitudes of their spectra as they were."""
+    size = signals.shape[1]
+    length = fft.next_fast_len(2 * size, real=True)
     ratio = np.fft.rfftfreq(length, period) / dynamics.natural_frequency
     response = -(ratio**2) / (1.0 - ratio**2 + 2j * dynamics.damping_ratio * ratio)
     response[0] = 1.0
-    turned = np.fft.rfft(values, length) * response.conj() / np.abs(response)
-    return np.asarray(np.fft.irfft(turned, length)[: values.size])
+    turned = np.fft.rfft(signals, length) * (response.conj() / np.abs(response))
+    return np.asarray(np.fft.irfft(turned, length)[:, :size])

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 from ..model.parameters import Dynamics
 from ..reducer import Reducer
 from .gauss_newton import Fit
-from .order_spectrum import OrderSpectrum
+from .order_spectrum import OrderSpectrum, with_stretch
 from .tooth_suspects import APART, ToothSuspect, tooth_suspects, unexplained
 from .tooth_trial import Lead
 
@@ -57,8 +57,8 @@ class ToothWatch:
         """Add the stretches of a fit; forget those before if it was made anew of all at hand."""
         signal, residual = (OrderSpectrum(), OrderSpectrum()) if anew else (self.signal, self.residual)
         for item in fit.evidence:
-            signal = signal.plus(item.stretch, dynamics)
-            residual = residual.plus(replace(item.stretch, acceleration=item.linearisation.residual), dynamics)
+            signals = item.stretch.acceleration, item.linearisation.residual
+            signal, residual = with_stretch((signal, residual), item.stretch, signals, dynamics)
         return replace(self, signal=signal, residual=residual)
 
     def faded(self, keep: float) -> "ToothWatch":
