@@ -2,6 +2,7 @@
 
 from collections import Counter, deque
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 from ..identification.result import Identification
 from ..reducer import Mount
@@ -61,6 +62,18 @@ class Limits:
         )
 
 
+class _Case(NamedTuple):
+    """What a verdict about the present evidence depends on."""
+
+    evidence: Identification
+    limits: Limits
+    shown: tuple[Component, Level] | None
+
+    def is_as(self, other: "_Case") -> bool:
+        """Whether the verdict must be the same."""
+        return self.evidence is other.evidence and self[1:] == other[1:]
+
+
 class Judge:
     """Keeps one joint's verdict.
 
@@ -80,6 +93,7 @@ class Judge:
         self._recent: deque[tuple[Component, Level]] = deque(maxlen=limits.confirm_window)
         self._shown: Verdict | None = None
         self._latched: Verdict | None = None
+        self._judged: tuple[_Case, Verdict] | None = None
 
     @property
     def limits(self) -> Limits:
@@ -106,7 +120,7 @@ class Judge:
         missing : str
             What is still missing, in words, for the case that there is no evidence yet.
         """
-        now = self._assess(evidence, missing)
+        now = self._of_now(evidence, missing)
         self._recent.append((now.component, now.level))
         shown = self._shown
         count = Counter(self._recent)[(now.component, now.level)]
@@ -123,6 +137,16 @@ class Judge:
         self._shown = shown
         return self._latch(shown)
 
+    def _of_now(self, evidence: Identification | None, missing: str) -> Verdict:
+        """Assess the evidence; it stays the same from one period to the next more often than not."""
+        if evidence is None:
+            return self._undetermined(missing)
+        shown = self._shown
+        case = _Case(evidence, self._limits, (shown.component, shown.level) if shown is not None else None)
+        if self._judged is None or not case.is_as(self._judged[0]):
+            self._judged = case, self._assess(evidence)
+        return self._judged[1]
+
     def _latch(self, shown: Verdict) -> Verdict:
         if not self._limits.latch:
             return shown
@@ -134,9 +158,7 @@ class Judge:
             return shown
         return replace(held, reason=f"latched: {held.reason} (now: {shown.reason})")
 
-    def _assess(self, evidence: Identification | None, missing: str) -> Verdict:
-        if evidence is None:
-            return self._undetermined(missing)
+    def _assess(self, evidence: Identification) -> Verdict:
         if evidence.blockers:
             return self._undetermined("; ".join(evidence.blockers))  # nor do blocked indexes carry a level
         if evidence.relative:
