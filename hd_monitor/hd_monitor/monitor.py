@@ -266,13 +266,16 @@ class Monitor:
     def _level(self, vibration: FloatArray) -> float:
         """RMS [m/s²] of the period's samples."""
         values = self._tangential(vibration)
-        values = values[np.isfinite(values)]
-        return float(np.sqrt(np.mean(values * values))) if values.size else math.nan
+        squares = values * values
+        power = float(squares.sum())
+        if math.isnan(power):
+            squares = squares[np.isfinite(squares)]
+            power = float(squares.sum())
+        return math.sqrt(power / squares.size) if squares.size else math.nan
 
     def _pack(self, stamp: int, verdict: Verdict, harvest: Harvest | None) -> Assessment:
         limits = self._judge.limits
-        quality = replace(
-            self._recorder.quality,
+        quality = self._recorder.quality(
             out_of_order=self._vibration.late + self._vibration.disordered,
             clock_jumps=self._vibration.jumps + self._motion.jumps,
         )

@@ -71,21 +71,26 @@ class Timeline:
 
     def _skip_empty(self, start: int) -> int:
         """Jump over a time in which no input has anything."""
-        oldest = [buffer.oldest for buffer in self._inputs if buffer.oldest is not None]
-        if oldest and min(oldest) >= start + self._period:
-            return min(oldest) // self._period * self._period
+        oldest = None
+        for buffer in self._inputs:
+            if buffer.oldest is not None and (oldest is None or buffer.oldest < oldest):
+                oldest = buffer.oldest
+        if oldest is not None and oldest >= start + self._period:
+            return oldest // self._period * self._period
         return start
 
     def _complete(self, end: int) -> bool:
-        states = [buffer.complete_until for buffer in self._inputs]
-        newest = max((buffer.newest for buffer in self._inputs if buffer.newest is not None), default=None)
-        if newest is None:
-            return False
-        given_up = newest >= end + self._timeout
-        return all(
-            (state is not None and state >= end) or given_up or self._ended(buffer)
-            for state, buffer in zip(states, self._inputs, strict=True)
-        ) and any(buffer.oldest is not None and buffer.oldest < end for buffer in self._inputs)
+        newest = None
+        waiting = some = False
+        for buffer in self._inputs:
+            until = buffer.complete_until
+            if (until is None or until < end) and not self._ended(buffer):
+                waiting = True
+            if buffer.newest is not None and (newest is None or buffer.newest > newest):
+                newest = buffer.newest
+            some = some or (buffer.oldest is not None and buffer.oldest < end)
+        given_up = newest is not None and newest >= end + self._timeout
+        return some and (given_up or not waiting)
 
     def _ended(self, buffer: StampedBuffer) -> bool:
         """Whether a buffer's clock was set back: nothing more will come on the old time base."""

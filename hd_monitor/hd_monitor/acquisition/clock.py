@@ -61,23 +61,29 @@ def recover_clock(times: npt.NDArray[np.float64], period: float | None = None) -
     even) or have jittering stamps (sorting would scramble the signal). Sorting is
     done where it leaves even stamps.
     """
-    order, duplicates = _without_duplicates(times)
+    order, duplicates = np.arange(times.size), 0
+    t, steps = times, times[1:] - times[:-1]
+    shortest = float(steps.min()) if steps.size else 0.0
+    if not shortest > 0.0:  # repeated stamps, or another order than theirs
+        order, duplicates = _without_duplicates(times)
+        t = times[order]
+        steps = t[1:] - t[:-1]
+        shortest = float(steps.min()) if steps.size else 0.0
     if order.size < 3:
         return None
-    t = times[order]
-    steps = t[1:] - t[:-1]
-    if steps.min() < 0.0:
+    if shortest < 0.0:
         by_stamp = np.argsort(t, kind="stable")
         if _unevenness(np.diff(t[by_stamp])) <= _DISORDERED:
             order, t = order[by_stamp], t[by_stamp]
             steps = np.diff(t)
+            shortest = float(steps.min())
     typical = period or float(np.median(steps))
     if typical <= 0.0:
         return None
-    if float(steps.max()) < (1.0 + _EVEN) * typical and float(steps.min()) > (1.0 - _EVEN) * typical:
+    if float(steps.max()) < (1.0 + _EVEN) * typical and shortest > (1.0 - _EVEN) * typical:
         number = np.arange(t.size)  # the common case: nothing missing, no jitter to speak of
         start, fitted = _line(number, t)
-        apart = t - start - fitted * number
+        apart = t - (start + fitted * number)
         jitter = math.sqrt(float(apart @ apart) / t.size)
         return Clock(order, number, start, fitted, jitter, duplicates)
     uneven = _unevenness(steps)
@@ -113,8 +119,6 @@ def _settle(number: npt.NDArray[np.int64], t: npt.NDArray[np.float64]) -> npt.ND
 
 
 def _without_duplicates(times: npt.NDArray[np.float64]) -> tuple[npt.NDArray[np.intp], int]:
-    if times.size > 1 and bool((times[1:] > times[:-1]).all()):
-        return np.arange(times.size), 0
     _, first = np.unique(times, return_index=True)
     return np.sort(first), int(times.size - first.size)
 
@@ -153,7 +157,7 @@ def _smooth(values: npt.NDArray[np.float64], width: int) -> npt.NDArray[np.float
 
 def _line(number: npt.NDArray[np.int64], t: npt.NDArray[np.float64]) -> tuple[float, float]:
     """Least-squares line through t(number): (start, slope)."""
-    mean_n, mean_t = float(number.mean()), float(t.mean())
+    mean_n, mean_t = float(number.sum()) / number.size, float(t.sum()) / t.size
     centred = number - mean_n
     slope = float(centred @ (t - mean_t)) / float(centred @ centred)
     return mean_t - slope * mean_n, slope

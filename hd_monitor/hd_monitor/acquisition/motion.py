@@ -6,10 +6,10 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from ..interpolation import hermite, linear
 from .clock import recover_clock
 
 FloatArray = npt.NDArray[np.float64]
+BoolArray = npt.NDArray[np.bool_]
 
 _LARGEST_HOLE = 0.25  # s; a joint can change its speed within that in ways that no interpolation knows
 _HOLE_PERIODS = 5.0
@@ -46,9 +46,10 @@ def even_stamps(times: FloatArray, rows: FloatArray) -> FloatArray:
     ndarray, shape (N,)
         Evened times [s], or `times` where evening them does not explain the motion clearly better.
     """
-    if times.size < _FEWEST_TO_EVEN or not np.isfinite(rows[:, :2]).all():
+    if times.size < _FEWEST_TO_EVEN:
         return times
-    if float(np.ptp(np.diff(times))) < _JITTER_NOTICED:
+    steps = times[1:] - times[:-1]
+    if float(steps.max() - steps.min()) < _JITTER_NOTICED or not np.isfinite(rows[:, :2]).all():
         return times
     clock = recover_clock(times)
     if clock is None or clock.order.size != times.size or clock.jitter < _JITTER_NOTICED:
@@ -89,20 +90,19 @@ class MotionTrack:
         self._times = np.concatenate([self._times, times])
         self._rows = np.concatenate([self._rows, rows])
         angle = self._rows[:, 0]
-        if float(np.abs(angle[1:] - angle[:-1]).max(initial=0.0)) > math.pi:
+        steps = angle[1:] - angle[:-1]
+        if steps.size and (steps.max() > math.pi or steps.min() < -math.pi):
             self._rows[:, 0] = np.unwrap(angle)
         return dropped
 
-    def forget_before(self, time: float) -> None:
-        """Drop what is no longer needed to interpolate from `time` [s] on."""
-        first = max(0, int(np.searchsorted(self._times, time)) - 2)
-        if first:
-            self._times, self._rows = self._times[first:], self._rows[first:]
+    def forget(self, time: float) -> None:
+        """Drop what is not needed to interpolate from `time` [s] on, and the messages of then and later.
 
-    def forget_from(self, time: float) -> None:
-        """Drop the messages of `time` [s] and later: they were only lent to close an interval."""
-        last = int(np.searchsorted(self._times, time))
-        self._times, self._rows = self._times[:last], self._rows[:last]
+        These were only lent to close an interval, and come again.
+        """
+        last = int(self._times.searchsorted(time))
+        first = max(0, last - 2)
+        self._times, self._rows = self._times[first:last], self._rows[first:last]
 
     def clear(self) -> None:
         """Forget everything."""
@@ -110,39 +110,59 @@ class MotionTrack:
         self._rows = np.empty((0, 3))
 
     def at(self, times: FloatArray) -> Motion:
-        """Interpolate at `times` [s], shape (N,); NaN outside of the track and in its holes."""
+        """Interpolate at rising `times` [s], shape (N,); NaN outside of the track and in its holes.
+
+        The angle follows the cubic (Hermite) that has the messages' positions and velocities at both ends.
+        """
         unknown = np.full(times.size, np.nan)
-        if self._times.size < 2 or not times.size:
-            return Motion(unknown, unknown, unknown)
         known, rows = self._times, self._rows
+        if known.size < 2 or not times.size:
+            return Motion(unknown, unknown, unknown)
         steps = known[1:] - known[:-1]
-        velocity = rows[:, 1]
-        finite = np.isfinite(velocity)
-        if not finite.all():
-            velocity = np.where(finite, velocity, np.gradient(rows[:, 0], known))
-        place = np.clip(known.searchsorted(times, side="right"), 1, known.size - 1) - 1
-        length = steps[place]
-        part = (times - known[place]) / length
-        first, last = rows[place], rows[place + 1]
-        velocities = velocity[place], velocity[place + 1]
-        angle = hermite(first[:, 0], last[:, 0], velocities[0] * length, velocities[1] * length, part)
-        speed = linear(*velocities, part)
-        effort = rows[:, 2]
+        position, velocity, effort = rows[:, 0], rows[:, 1], rows[:, 2]
+        if not np.isfinite(velocity).all():
+            velocity = np.where(np.isfinite(velocity), velocity, np.gradient(position, known))
         measured = np.isfinite(effort)
+        rise, first_slope, last_slope = position[1:] - position[:-1], velocity[:-1] * steps, velocity[1:] * steps
+        polynomials = np.empty((10, steps.size))  # of every interval, then of the times: far fewer gathers and products
+        polynomials[0], polynomials[1] = known[:-1], steps
+        polynomials[2], polynomials[3] = position[:-1], first_slope
+        polynomials[4] = 3.0 * rise - 2.0 * first_slope - last_slope
+        polynomials[5] = first_slope + last_slope - 2.0 * rise
+        polynomials[6], polynomials[7] = velocity[:-1], velocity[1:] - velocity[:-1]
+        polynomials[8], polynomials[9] = effort[:-1], effort[1:] - effort[:-1]
+        start, length, q0, q1, q2, q3, v0, v1, e0, e1 = np.repeat(polynomials, _in_each(known, times), axis=1)
+        part = (times - start) / length
+        angle = q0 + part * (q1 + part * (q2 + part * q3))
+        speed = v0 + part * v1
         if measured.all():
-            torque = linear(first[:, 2], last[:, 2], part)
+            torque = e0 + part * e1
         elif np.count_nonzero(measured) >= max(2, _ENOUGH_EFFORT * effort.size):
             torque = np.interp(times, known[measured], effort[measured])
         else:
-            torque = unknown.copy()
-        outside = (times < known[0]) | (times > known[-1])
+            torque = unknown
+        outside: list[slice | BoolArray] = []
+        if times[0] < known[0]:
+            outside.append(slice(0, int(times.searchsorted(known[0]))))
+        if times[-1] > known[-1]:
+            outside.append(slice(int(times.searchsorted(known[-1], side="right")), None))
         longest = float(steps.max())
         if longest > _largest_gap(float(steps.min())):  # the median is not below the least: only now it is wanted
-            outside |= length > _largest_gap(float(np.median(steps)))
-        if outside.any():
+            outside.append(length > _largest_gap(float(np.median(steps))))
+        for place in outside:
             for values in (angle, speed, torque):
-                values[outside] = np.nan
+                values[place] = np.nan
         return Motion(angle, speed, torque)
+
+
+def _in_each(known: FloatArray, times: FloatArray) -> npt.NDArray[np.intp]:
+    """Count the rising `times` in each interval between rising `known` ones; those outside go to the outermost."""
+    counts = np.empty(known.size - 1, dtype=np.intp)
+    edges = times.searchsorted(known[1:-1])
+    counts[:-1] = edges
+    counts[-1] = times.size
+    counts[1:] -= edges
+    return counts
 
 
 def _largest_gap(step: float) -> float:

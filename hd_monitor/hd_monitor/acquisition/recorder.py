@@ -81,10 +81,9 @@ class Recorder:
         for name, value in changes.items():
             counts[name] = value if name in _REPLACED else counts.get(name, 0) + value
 
-    @property
-    def quality(self) -> Quality:
-        """The counters so far; those of single samples' order and of the clock are the buffers'."""
-        return Quality(**self._counts)
+    def quality(self, *, out_of_order: int, clock_jumps: int) -> Quality:
+        """Return the counters so far, with the two that the buffers keep."""
+        return Quality(**self._counts, out_of_order=out_of_order, clock_jumps=clock_jumps)
 
     @property
     def rate(self) -> float:
@@ -111,10 +110,10 @@ class Recorder:
             Zero of the core's times and end of the period [ns].
         """
         joint_samples = self._motion(motion, next_motion, epoch, end)
-        turning = bool(joint_samples.angle.size) and float(np.ptp(joint_samples.angle)) > _STANDING
+        angle = joint_samples.angle
+        turning = angle.size > 0 and float(angle.max() - angle.min()) > _STANDING
         records, values = self._vibration(vibration, epoch, turning)
-        self._track.forget_from((end - epoch) * _NS)  # the lent message is handed out again with its own period
-        self._track.forget_before((end - epoch) * _NS)
+        self._track.forget((end - epoch) * _NS)
         return Harvest(records, joint_samples, values)
 
     def _motion(self, motion: Samples, following: Samples, epoch: int, end: int) -> JointSamples:
@@ -124,15 +123,15 @@ class Recorder:
             stamps, rows = stamps[order], rows[order]
         times = _seconds(stamps, epoch)
         dropped = self._track.extend(even_stamps(times, rows), rows)
-        fault = "joint states without a finite position or with repeated stamps were left out" if dropped else ""
         self.count(motion_messages=int(stamps.size) - dropped, motion_faults=dropped)
-        if fault:
-            self.count(last_fault=fault)
         if following.stamps.size:
             self._track.extend(_seconds(following.stamps, epoch), following.values)
-        good = np.isfinite(rows[:, 0])
-        good[1:] &= stamps[1:] > stamps[:-1]
-        return JointSamples(times=times[good], angle=rows[good, 0], speed=rows[good, 1], effort=rows[good, 2])
+        if dropped:
+            self.count(last_fault="joint states without a finite position or with repeated stamps were left out")
+            good = np.isfinite(rows[:, 0])
+            good[1:] &= stamps[1:] > stamps[:-1]
+            times, rows = times[good], rows[good]
+        return JointSamples(times=times, angle=rows[:, 0], speed=rows[:, 1], effort=rows[:, 2])
 
     def _vibration(self, samples: Samples, epoch: int, turning: bool) -> tuple[tuple[Record, ...], FloatArray]:
         if not samples.stamps.size:
@@ -159,26 +158,31 @@ class Recorder:
             elif missing:
                 self._hole(missing)
         self._grid = _Grid(clock.start + clock.period * (int(number[-1]) + 1), clock.period)
-        steps = np.diff(number)
-        holes = np.flatnonzero(steps > 1)
-        for hole in holes.tolist():
-            self._hole(int(steps[hole]) - 1)
-        cuts = holes[(steps[holes] - 1) * clock.period > self._max_gap] + 1
+        bounds = [0, number.size]
+        if int(number[-1]) >= number.size:
+            steps = np.diff(number)
+            holes = np.flatnonzero(steps > 1)
+            for hole in holes.tolist():
+                self._hole(int(steps[hole]) - 1)
+            cuts = holes[(steps[holes] - 1) * clock.period > self._max_gap] + 1
+            bounds[1:1] = cuts.tolist()
         records: list[Record] = []
-        bounds = [0, *cuts.tolist(), number.size]
         for piece, (first, last) in enumerate(itertools.pairwise(bounds)):
             if piece:
                 self._joined = False
             lead = missing if piece == 0 else 0
             offset = int(number[first]) - lead
-            values = np.full(int(number[last - 1]) - offset + 1, np.nan)
-            values[number[first:last] - offset] = screened.values[first:last]
+            size = int(number[last - 1]) - offset + 1
+            values = screened.values[first:last]
+            if size > last - first:  # some are missing in between
+                values = np.full(size, np.nan)
+                values[number[first:last] - offset] = screened.values[first:last]
             records.extend(self._records(start + clock.period * offset, clock.period, values))
         return tuple(records), screened.values
 
     def _records(self, start: float, period: float, values: FloatArray) -> list[Record]:
         """Cut a contiguous stretch where the motion is unknown."""
-        times: FloatArray = np.asarray(start + period * np.arange(values.size), dtype=np.float64)
+        times = np.asarray(start + period * np.arange(values.size), dtype=np.float64)
         angle, speed, torque = self._track.at(times)
         known = np.isfinite(angle)
         if known.all():

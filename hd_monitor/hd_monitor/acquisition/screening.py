@@ -1,16 +1,19 @@
 """Screening of vibration samples: values that are no vibration are left out and counted, never used in silence."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 FloatArray = npt.NDArray[np.float64]
+Places = npt.NDArray[np.intp]
 
 _SPIKE = 8.0  # robust standard deviations of the curvature; a sine never exceeds 2
 _AROUND = 12  # samples on either side of a spike that tell the level there
 _STUCK_RUN = 32  # equal samples in a row: no sensor at rest is that quiet
 _CLIPPED_RUN = 3  # equal samples in a row at the extreme: a flat top
+_NOWHERE = np.empty(0, dtype=np.intp)
 
 
 class Screened(NamedTuple):
@@ -37,53 +40,58 @@ def screen(values: FloatArray, *, full_scale: float = 0.0, turning: bool = True)
     """
     clean = np.array(values, dtype=np.float64)
     finite = np.isfinite(clean)
-    not_finite = int(clean.size - finite.sum())
+    not_finite = clean.size - int(np.count_nonzero(finite))
     if not_finite:
         clean[~finite] = np.nan
     if clean.size < 3:
         return Screened(clean, not_finite, 0, 0, 0)
-    clipped, stuck = _flat_samples(clean, full_scale)
-    if not turning:
-        stuck[:] = False
-    clean[clipped | stuck] = np.nan
+    clipped = np.flatnonzero(np.abs(clean) >= full_scale) if full_scale > 0.0 else _NOWHERE
+    stuck = _NOWHERE
+    equal = clean[1:] == clean[:-1]
+    if equal.any():
+        flat, stuck = _flat_runs(clean, equal, tops=full_scale == 0.0)
+        clipped = np.setdiff1d(np.union1d(clipped, flat), stuck)
+        if not turning:
+            stuck = _NOWHERE
+    clean[clipped] = np.nan
+    clean[stuck] = np.nan
     spikes = _spikes(clean)
     clean[spikes] = np.nan
-    return Screened(clean, not_finite, int(clipped.sum()), int(stuck.sum()), int(spikes.size))
+    return Screened(clean, not_finite, clipped.size, stuck.size, spikes.size)
 
 
-def _flat_samples(values: FloatArray, full_scale: float) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]]:
-    none = np.zeros(values.size, dtype=np.bool_)
-    clipped = np.abs(values) >= full_scale if full_scale > 0.0 else none
-    equal = values[1:] == values[:-1]
-    if not equal.any():
-        return clipped, none
+def _flat_runs(values: FloatArray, equal: npt.NDArray[np.bool_], *, tops: bool) -> tuple[Places, Places]:
+    """Places of flat tops, if asked for, and of values that are stuck."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], equal, [False]]).astype(np.int8)))
-    stuck = none.copy()
-    flat = none.copy()
+    flat, stuck = np.zeros(values.size, dtype=np.bool_), np.zeros(values.size, dtype=np.bool_)
     high, low = np.nanmax(values), np.nanmin(values)
     for first, last in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
         run = slice(first, last + 1)
         length = last + 1 - first
         if length >= _STUCK_RUN:
             stuck[run] = True
-        elif full_scale == 0.0 and length >= _CLIPPED_RUN and values[first] in (high, low) and high > low:
+        elif tops and length >= _CLIPPED_RUN and values[first] in (high, low) and high > low:
             flat[run] = True
-    return (clipped | flat) & ~stuck, stuck
+    return np.flatnonzero(flat), np.flatnonzero(stuck)
 
 
-def _spikes(values: FloatArray) -> npt.NDArray[np.intp]:
+def _spikes(values: FloatArray) -> Places:
     """Indexes of single samples that stick out of their neighbours."""
     curvature = np.abs(values[1:-1] - 0.5 * (values[:-2] + values[2:]))
-    known = curvature[np.isfinite(curvature)]
+    known = curvature
+    largest = float(curvature.max(initial=0.0))
+    if math.isnan(largest):
+        known = curvature[np.isfinite(curvature)]
+        largest = float(known.max(initial=0.0))
     if known.size < 16:
-        return np.empty(0, dtype=np.intp)
+        return _NOWHERE
     # The lower of two middle values stands for the median where it decides that nothing sticks out
     middle = np.partition(known, (known.size - 1) // 2)[(known.size - 1) // 2]
-    if float(known.max()) <= _SPIKE * 1.4826 * float(middle):
-        return np.empty(0, dtype=np.intp)
+    if largest <= _SPIKE * 1.4826 * float(middle):
+        return _NOWHERE
     limit = _SPIKE * 1.4826 * float(np.median(known))
     if limit == 0.0 or not (known > limit).any():
-        return np.empty(0, dtype=np.intp)
+        return _NOWHERE
     # the neighbours of a spike bend too, half as much: only the local maximum is the spike
     padded = np.concatenate([[0.0, 0.0], np.nan_to_num(curvature), [0.0, 0.0]])
     peak = (padded[2:-2] >= padded[1:-3]) & (padded[2:-2] >= padded[3:-1]) & (padded[2:-2] > limit)

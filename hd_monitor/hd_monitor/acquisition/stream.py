@@ -35,11 +35,35 @@ class Samples(NamedTuple):
     values: FloatArray
 
 
+class _Chunk(NamedTuple):
+    """Samples that were added together; `ordered` is true if their stamps are known never to fall."""
+
+    stamps: StampArray
+    values: FloatArray
+    ordered: bool
+
+    def split(self, until: int) -> tuple["_Chunk | None", "_Chunk | None"]:
+        """Return the samples stamped before `until` [ns], and the others."""
+        stamps, values, ordered = self
+        if ordered:
+            count = int(stamps.searchsorted(until))
+            early: slice | npt.NDArray[np.bool_] = slice(count)
+            late: slice | npt.NDArray[np.bool_] = slice(count, None)
+        else:
+            early = stamps < until
+            late, count = ~early, int(np.count_nonzero(early))
+        if count == stamps.size:
+            return self, None
+        if not count:
+            return None, self
+        return _Chunk(stamps[early], values[early], ordered), _Chunk(stamps[late], values[late], ordered)
+
+
 @dataclass(slots=True)
 class _Epoch:
     """What came between two jumps of the clock."""
 
-    chunks: list[Samples] = field(default_factory=list)
+    chunks: list[_Chunk] = field(default_factory=list)
     newest: int | None = None
     oldest: int | None = None
 
@@ -74,7 +98,7 @@ class StampedBuffer:
         first, newest = int(stamps[0]), self._epochs[-1].newest
         near = newest is None or newest <= first <= newest + LEAP
         if near and not self._suspects and (not steps.size or (steps.min() >= 0 and steps.max() <= LEAP)):
-            self._append(self._epochs[-1], stamps, values)  # the common case: everything in order
+            self._append(self._epochs[-1], _Chunk(stamps, values, ordered=True))  # the common case
             return
         bounds = [0, *(np.flatnonzero(np.abs(steps) > CLOCK_JUMP) + 1).tolist(), stamps.size]
         for start, stop in pairwise(bounds):
@@ -111,14 +135,16 @@ class StampedBuffer:
         keep = behind <= LATENESS
         self.late += int(stamps.size - keep.sum())
         self.disordered += int((behind[keep] > 0).sum())
-        self._append(epoch, stamps[keep], values[keep])
+        if keep.any():
+            self._append(epoch, _Chunk(stamps[keep], values[keep], ordered=False))
 
-    def _append(self, epoch: _Epoch, stamps: StampArray, values: FloatArray) -> None:
-        if stamps.size:
-            epoch.chunks.append(Samples(stamps, values))
-            low, high = int(stamps.min()), int(stamps.max())
-            epoch.newest = high if epoch.newest is None else max(high, epoch.newest)
-            epoch.oldest = low if epoch.oldest is None else min(low, epoch.oldest)
+    @staticmethod
+    def _append(epoch: _Epoch, chunk: _Chunk) -> None:
+        stamps = chunk.stamps
+        epoch.chunks.append(chunk)
+        low, high = (int(stamps[0]), int(stamps[-1])) if chunk.ordered else (int(stamps.min()), int(stamps.max()))
+        epoch.newest = high if epoch.newest is None else max(high, epoch.newest)
+        epoch.oldest = low if epoch.oldest is None else min(low, epoch.oldest)
 
     @property
     def complete_until(self) -> int | None:
@@ -157,31 +183,31 @@ class StampedBuffer:
     def take(self, until: int) -> Samples:
         """Remove and return the samples stamped before `until` [ns], in the order of arrival."""
         epoch = self._epochs[0]
-        taken, left = [], []
+        taken: list[_Chunk] = []
+        left: list[_Chunk] = []
         for chunk in epoch.chunks:
-            early = chunk.stamps < until
-            count = int(np.count_nonzero(early))
-            if count == early.size:
-                taken.append(chunk)
-            elif not count:
-                left.append(chunk)
-            elif early[:count].all():
-                taken.append(Samples(chunk.stamps[:count], chunk.values[:count]))
-                left.append(Samples(chunk.stamps[count:], chunk.values[count:]))
-            else:
-                taken.append(Samples(chunk.stamps[early], chunk.values[early]))
-                left.append(Samples(chunk.stamps[~early], chunk.values[~early]))
+            early, late = chunk.split(until)
+            if early is not None:
+                taken.append(early)
+            if late is not None:
+                left.append(late)
         epoch.chunks = left
-        epoch.oldest = min((int(chunk.stamps.min()) for chunk in left), default=None)
+        epoch.oldest = min((_oldest(chunk) for chunk in left), default=None)
         if not taken:
             return Samples(np.empty(0, dtype=np.int64), np.empty((0, self._columns)))
+        if len(taken) == 1:
+            return Samples(taken[0].stamps, taken[0].values)
         return Samples(np.concatenate([c.stamps for c in taken]), np.concatenate([c.values for c in taken]))
 
     def peek_first(self) -> Samples:
         """Return the earliest sample still here without removing it, or none."""
-        best: Samples | None = None
-        for chunk in self._epochs[0].chunks:
-            index = int(np.argmin(chunk.stamps))
-            if best is None or chunk.stamps[index] < best.stamps[0]:
-                best = Samples(chunk.stamps[index : index + 1], chunk.values[index : index + 1])
-        return best or Samples(np.empty(0, dtype=np.int64), np.empty((0, self._columns)))
+        chunks = self._epochs[0].chunks
+        if not chunks:
+            return Samples(np.empty(0, dtype=np.int64), np.empty((0, self._columns)))
+        first = min(chunks, key=_oldest)
+        place = 0 if first.ordered else int(np.argmin(first.stamps))
+        return Samples(first.stamps[place : place + 1], first.values[place : place + 1])
+
+
+def _oldest(chunk: _Chunk) -> int:
+    return int(chunk.stamps[0] if chunk.ordered else chunk.stamps.min())

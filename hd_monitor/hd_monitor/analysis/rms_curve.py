@@ -48,23 +48,27 @@ class RmsAccumulator:
         """Add samples (NaN ones are left out): wave-generator speeds [rpm] and values, both of shape (N,)."""
         speed = np.abs(np.asarray(speed_rpm, dtype=np.float64))
         value = np.asarray(values, dtype=np.float64)
-        good = np.isfinite(speed) & np.isfinite(value)
-        if not good.all():
+        if not math.isfinite(float(speed.sum() + value.sum())):  # rarely so, and cheaper to ask
+            good = np.isfinite(speed) & np.isfinite(value)
             speed, value = speed[good], value[good]
         if not speed.size:
             return
-        number = np.rint(speed / self._width).astype(np.int64)
-        lowest = int(number.min())
-        count = np.bincount(number - lowest)
-        squares = np.bincount(number - lowest, value * value)
-        speeds = np.bincount(number - lowest, speed)
-        for offset in np.flatnonzero(count).tolist():
-            old = self._sums.get(lowest + offset, (0.0, 0.0, 0))
-            total, power = old[0] + float(speeds[offset]), old[1] + float(squares[offset])
-            samples = old[2] + int(count[offset])
-            self._sums[lowest + offset] = total, power, samples
-            self._bins[lowest + offset] = SpeedBin(total / samples, math.sqrt(power / samples), samples)
+        lowest, highest = (round(float(end) / self._width) for end in (speed.min(), speed.max()))
+        squares = value * value
+        if lowest == highest:
+            self._add_to_bin(lowest, float(speed.sum()), float(squares.sum()), speed.size)
+        else:
+            number = np.rint(speed / self._width).astype(np.int64) - lowest
+            count, speeds, powers = np.bincount(number), np.bincount(number, speed), np.bincount(number, squares)
+            for offset in np.flatnonzero(count).tolist():
+                self._add_to_bin(lowest + offset, float(speeds[offset]), float(powers[offset]), int(count[offset]))
         self._curve = None
+
+    def _add_to_bin(self, number: int, speeds: float, squares: float, samples: int) -> None:
+        old = self._sums.get(number, (0.0, 0.0, 0))
+        total, power, count = old[0] + speeds, old[1] + squares, old[2] + samples
+        self._sums[number] = total, power, count
+        self._bins[number] = SpeedBin(total / count, math.sqrt(power / count), count)
 
     def curve(self) -> RmsCurve:
         """Return the curve collected so far."""
