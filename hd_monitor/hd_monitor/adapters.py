@@ -180,11 +180,17 @@ def _in_order(groups: list[cdr.MultiArrays], faults: list[Fault]) -> Iterator[co
     """Yield the blocks, and what is wrong with those that are none, in the order of the messages."""
     items: list[tuple[int, contract.Block | str]] = list(faults)
     for group in groups:
-        for place, data in zip(group.place.tolist(), group.data, strict=True):
-            try:
-                items.append((place, contract.unpack_block(group.dimensions, group.data_offset, data)))
-            except LayoutError as error:
-                items.append((place, str(error)))
-    items.sort(key=lambda item: item[0])
+        places = group.place.tolist()
+        try:
+            blocks = contract.unpack_blocks(group.dimensions, group.data_offset, group.data)
+        except LayoutError as error:
+            items.extend((place, str(error)) for place in places)
+            continue
+        items.extend(
+            (place, str(block) if isinstance(block, LayoutError) else block)
+            for place, block in zip(places, blocks, strict=True)
+        )
+    if len(groups) > 1 or faults:
+        items.sort(key=lambda item: item[0])
     for _, item in items:
         yield item

@@ -85,6 +85,24 @@ def unpack_block(dimensions: Sequence[tuple[str, int, int]], data_offset: int, d
         raise LayoutError("a block's data are not numbers; the contract asks for a list of float64") from None
     if values.ndim != 1:
         raise LayoutError(f"a block's data have the shape {values.shape}; the contract asks for a plain list")
+    (block,) = unpack_blocks(dimensions, data_offset, values[None, :])
+    if isinstance(block, LayoutError):
+        raise block
+    return block
+
+
+def unpack_blocks(
+    dimensions: Sequence[tuple[str, int, int]], data_offset: int, data: npt.NDArray[np.float64]
+) -> list[Block | LayoutError]:
+    """Read many arrays of the same layout, one a row of `data`; in place of a bad one stands what is wrong with it.
+
+    See :func:`unpack_block`.
+
+    Raises
+    ------
+    LayoutError
+        If the layout is not the contract's.
+    """
     if len(dimensions) != 1:
         raise LayoutError(f"a block has {len(dimensions)} dimensions; the contract asks for exactly 1")
     label, size, stride = dimensions[0]
@@ -92,21 +110,26 @@ def unpack_block(dimensions: Sequence[tuple[str, int, int]], data_offset: int, d
         raise LayoutError(f"a block's dimension is labelled {label!r}; the contract asks for {BLOCK_LABEL!r}")
     if data_offset != BLOCK_OFFSET:
         raise LayoutError(f"a block's data_offset is {data_offset}; the contract asks for {BLOCK_OFFSET}")
-    if stride != size or values.size != BLOCK_OFFSET + size:
+    if stride != size or data.shape[1] != BLOCK_OFFSET + size:
         raise LayoutError(
-            f"a block announces {size} samples with stride {stride} but carries {values.size} values; "
+            f"a block announces {size} samples with stride {stride} but carries {data.shape[1]} values; "
             f"the contract asks for stride = size and {BLOCK_OFFSET} values before the samples"
         )
-    seconds, nanoseconds, period, sequence = values[:BLOCK_OFFSET].tolist()
+    heads = data[:, :BLOCK_OFFSET].tolist()
+    return [_with_head(head, samples) for head, samples in zip(heads, data[:, BLOCK_OFFSET:], strict=True)]
+
+
+def _with_head(head: list[float], samples: npt.NDArray[np.float64]) -> Block | LayoutError:
+    seconds, nanoseconds, period, sequence = head
     whole = seconds.is_integer() and nanoseconds.is_integer() and sequence.is_integer()
-    if not whole or min(seconds, nanoseconds, sequence) < 0.0 or nanoseconds >= NANOSECONDS or seconds >= 2.0**33:
-        raise LayoutError(
+    if not (whole and 0.0 <= seconds < 2.0**33 and 0.0 <= nanoseconds < NANOSECONDS and sequence >= 0.0):
+        return LayoutError(
             f"a block starts at {seconds!r} s {nanoseconds!r} ns with number {sequence!r}; the contract asks for "
             "whole, non-negative values"
         )
-    if not (math.isfinite(period) and 0.0 < period < 10.0):
-        raise LayoutError(f"a block's sample period is {period!r} s; the contract asks for the time between samples")
-    return Block(int(seconds) * NANOSECONDS + int(nanoseconds), period, int(sequence), values[BLOCK_OFFSET:])
+    if not 0.0 < period < 10.0:
+        return LayoutError(f"a block's sample period is {period!r} s; the contract asks for the time between samples")
+    return Block(int(seconds) * NANOSECONDS + int(nanoseconds), period, int(sequence), samples)
 
 
 def zoom_layout(bins: int) -> tuple[Dimension, Dimension]:
