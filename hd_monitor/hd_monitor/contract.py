@@ -3,7 +3,6 @@
 Nothing here knows a message class: the ROS shell and the offline reader both hand over labels, sizes and data.
 """
 
-import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
