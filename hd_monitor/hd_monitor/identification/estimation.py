@@ -28,7 +28,7 @@ from .linearisation import Predictor
 from .misfit import LineResidual
 from .noise_floor import NoiseFloor
 from .preparation import Preparation
-from .refinement import Score, score
+from .refinement import Score, scores
 from .result import Identification
 from .schedule import POOR, SECOND_LOOK, Schedule
 from .stretch import Stretch
@@ -249,14 +249,14 @@ class Estimation:
         for _ in candidates:
             knowledge = (self._prior + self._learnt).plus(fit.equations, fit.values)
             waiting = [place for place in candidates if not self._active[place]]
-            scores = {place: self._score(place, knowledge, fit.values) for place in waiting}
-            wrong = [place for place in waiting if scores[place].significance > CONTRADICTION]
+            asked = self._scores(waiting, knowledge, fit.values)
+            wrong = [place for place in waiting if asked[place].significance > CONTRADICTION]
             if self._coverage.speed_varies:
                 known = ((u.frequency, FREQUENCY_KNOWN), (u.damping, DAMPING_KNOWN))
-                wrong += [place for place, std in known if place in waiting and scores[place].std < std]
+                wrong += [place for place, std in known if place in waiting and asked[place].std < std]
             if not wrong:
                 break
-            worst = max(wrong, key=lambda place: scores[place].significance)
+            worst = max(wrong, key=lambda place: asked[place].significance)
             self._active = self._active | u.mask(worst)
             stretches = [item.stretch for item in fit.evidence]
             fit = self._problem(stretches, self._prior + self._learnt).solve(fit.values, rounds=_ROUNDS)
@@ -284,8 +284,8 @@ class Estimation:
             one_speed=not self._coverage.speed_varies,
         )
 
-    def _score(self, place: int, knowledge: Knowledge, values: FloatArray) -> Score:
-        return score(place, knowledge, values, self._active, float(self._std[place]))
+    def _scores(self, places: Sequence[int], knowledge: Knowledge, values: FloatArray) -> dict[int, Score]:
+        return scores(places, knowledge, values, self._active, self._std)
 
     # Learning ------------------------------------------------------------------------------------------------------
 
@@ -318,7 +318,7 @@ class Estimation:
             values=fit.values,
             active=self._active,
             knowledge=knowledge,
-            scores={place: self._score(place, knowledge, fit.values) for place in places},
+            scores=self._scores(places, knowledge, fit.values),
             misfit=self._line_residual,
             coverage=self._coverage,
             recent=self._recent,

@@ -97,11 +97,10 @@ class Problem:
             equations = equations + item.equations
         information = equations.information + self.prior.information
         right = equations.gradient + self.prior.gradient(values)
-        step = np.zeros(values.size)
-        inner = information[np.ix_(self.active, self.active)]
-        step[self.active] = np.linalg.lstsq(inner, right[self.active], rcond=1e-13)[0]
         covariance = np.zeros(information.shape)
-        covariance[np.ix_(self.active, self.active)] = np.linalg.pinv(inner, rcond=1e-13, hermitian=True)
+        place = np.ix_(self.active, self.active)
+        covariance[place] = np.linalg.pinv(information[place], rcond=1e-13, hermitian=True)
+        step = covariance @ right
         return Fit(
             values=values,
             evidence=evidence,

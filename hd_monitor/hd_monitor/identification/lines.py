@@ -4,10 +4,10 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 
 from ..reducer import LinePair, Reducer
 from .noise_floor import NoiseFloor
+from .path import powers
 from .result import LineEstimate
 from .stretch import Stretch
 
@@ -55,8 +55,7 @@ def measure_lines(
     if float(np.ptp(angle)) > _SIDE_TRAVEL:
         places += [(k, m) for k in pairs for m in range(-1, k + 2) if m not in (0, k)]
     orders = [k * lowest_order + m * gap for k, m in places]
-    # Products of two exponentials, many times as fast as one exponential for every order
-    base, side = (_powers(np.exp(1j * order * angle), len(pairs) + 1) for order in (lowest_order, gap))
+    base, side = (powers(np.exp(1j * order * angle), len(pairs) + 1) for order in (lowest_order, gap))
     phase = np.stack([base[k] * (side[m] if m >= 0 else side[-m].conj()) for k, m in places])
     columns = np.concatenate([phase.real, -phase.imag])
     gram = columns @ columns.T
@@ -77,11 +76,3 @@ def measure_lines(
         )
         for k in pairs
     )
-
-
-def _powers(unit: npt.NDArray[np.complex128], highest: int) -> list[npt.NDArray[np.complex128]]:
-    """Return the powers 0, 1, … `highest`."""
-    powers = [np.ones_like(unit)]
-    for _ in range(highest):
-        powers.append(powers[-1] * unit)
-    return powers
