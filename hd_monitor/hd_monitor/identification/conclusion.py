@@ -47,9 +47,11 @@ class Conclusions:
         self._warn: float = settings["diagnosis.warn_index"]
         self._scrutiny = Scrutiny(settings)
 
-    def well_known(self, result: Identification) -> bool:
-        """Whether an even smaller uncertainty would be of no interest."""
-        return not result.blockers and max(result.index_std) < WELL_KNOWN * max(self._warn, *result.index)
+    def sureness(self, result: Identification) -> float:
+        """Standard deviation of the indexes that satisfies, over what they have; 0 where no part may be named."""
+        if result.blockers:
+            return 0.0
+        return WELL_KNOWN * max(self._warn, *result.index) / max(*result.index_std, 1e-12)
 
     def conclude(
         self,

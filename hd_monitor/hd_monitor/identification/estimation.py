@@ -100,9 +100,11 @@ class Estimation:
         self.unusable = ""
 
     @property
-    def well_known(self) -> bool:
-        """Whether more data would tell nothing more of interest."""
-        return self.seconds >= WINDOW and self.result is not None and self._conclusions.well_known(self.result)
+    def sureness(self) -> float:
+        """How well the indexes are known: from 1 on, more data would tell nothing more of interest."""
+        if self.seconds < WINDOW or self.result is None:
+            return 0.0
+        return self._conclusions.sureness(self.result)
 
     def take(self, records: Sequence[Record]) -> None:
         """Use a stretch, given as records that follow each other; one that defies all arithmetic is left out."""

@@ -10,8 +10,11 @@ from .collector import Collector
 from .estimation import Estimation
 from .result import Identification
 
-CRUISE_STRETCH, CRUISE_PERIOD = 2.0, 32.0
-"""Length [s] of the stretches looked at, and time [s] between them, once the indexes are known well enough."""
+CRUISE_STRETCH = 2.0
+"""Length [s] of the stretches looked at once the indexes are known well enough."""
+
+CRUISE_PERIOD, LONGEST_PERIOD = 32.0, 64.0
+"""Time [s] from one such stretch to the next where the indexes are known just well enough, and where far better."""
 
 LONGEST_STRETCH = 4.0
 """Length [s] to which stretches grow while evidence is collected."""
@@ -63,8 +66,8 @@ class Identifier:
             self._passed = 0.0
         for stretch in self._collector.add(record, self._stretch_length):
             self._estimation.take(stretch)
-            if self._sparing and self._estimation.well_known:
-                self._skip = CRUISE_PERIOD - CRUISE_STRETCH
+            if self._is_cruising:
+                self._skip = min(CRUISE_PERIOD * self._estimation.sureness, LONGEST_PERIOD) - CRUISE_STRETCH
 
     def estimate(self) -> Identification | None:
         """Return the newest estimate; None as long as there was not enough motion."""
@@ -77,7 +80,11 @@ class Identifier:
         return self._estimation.result
 
     @property
+    def _is_cruising(self) -> bool:
+        return self._sparing and self._estimation.sureness >= 1.0
+
+    @property
     def _stretch_length(self) -> float:
-        if self._sparing and self._estimation.well_known:
+        if self._is_cruising:
             return CRUISE_STRETCH
         return min(LONGEST_STRETCH, max(1.0, 0.25 * self._estimation.seconds))
