@@ -217,8 +217,7 @@ class Recorder:
 
     def _torque(self, effort: FloatArray) -> FloatArray:
         """Pick the transmitted torque; drivers that measure no effort report zeros."""
-        known = np.isfinite(effort)
-        measured = bool(known.any()) and bool((effort[known] != 0.0).any())
+        measured = bool((np.abs(effort) > 0.0).any())  # false for NaN
         if self._load_source in ("auto", "effort") and measured:
             self.torque_source = "effort"
             return effort
