@@ -165,9 +165,7 @@ class Judge:
             return self._assess_relative(evidence)
         limits = self._limits
         held = self._shown.component if self._shown is not None else Component.UNDETERMINED
-        alarmed = held not in (Component.NONE, Component.UNDETERMINED) or (
-            self._shown is not None and self._shown.level > Level.OK and held is not Component.UNDETERMINED
-        )
+        alarmed = held not in (Component.NONE, Component.UNDETERMINED)
         limit = limits.warn * (1.0 - limits.hysteresis) if alarmed else limits.warn
         component = name_component(evidence.index, limit, limits.both_ratio)
         odds = component_probabilities(evidence, limit, limits.both_ratio)
@@ -189,7 +187,7 @@ class Judge:
         component = name_component(evidence.index, 0.0, self._limits.both_ratio)
         odds = component_probabilities(evidence, 0.0, self._limits.both_ratio)
         if self._contradicted(component, odds):
-            return self._undetermined(describe_doubtful_name(evidence, odds), Level.OK)
+            return self._undetermined(describe_doubtful_name(evidence, odds))
         return Verdict(
             component=component,
             level=Level.OK,
@@ -209,8 +207,6 @@ class Judge:
 
     def _magnitude(self, evidence: Identification) -> Level:
         """Level that the larger index calls for, whichever spline it belongs to."""
-        if evidence.relative:
-            return Level.OK
         limits = self._limits
         shown = self._shown.level if self._shown is not None else Level.OK
         easier = 1.0 - limits.hysteresis
