@@ -70,17 +70,17 @@ class Case:
     """
 
     model: ParametricModel
-    motion: str
-    speed: float
-    span: float
-    duration: float
-    snr: float
-    colour: str
-    spikes: float
-    lost: float
-    measured: bool
-    rate: float
-    seed: int
+    motion: str = "dwell"
+    speed: float = 1000.0
+    span: float = math.radians(120.0)
+    duration: float = 12.0
+    snr: float = 20.0
+    colour: str = "white"
+    spikes: float = 0.0
+    lost: float = 0.0
+    measured: bool = False
+    rate: float = 1000.0
+    seed: int = 1
 
     @property
     def index(self) -> LinePair:

@@ -18,21 +18,7 @@ MODEL = ParametricModel(
 
 
 def case(**changes):
-    values = {
-        "model": MODEL,
-        "motion": "dwell",
-        "speed": 1000.0,
-        "span": np.radians(120.0),
-        "duration": 12.0,
-        "snr": 20.0,
-        "colour": "white",
-        "spikes": 0.0,
-        "lost": 0.0,
-        "measured": False,
-        "rate": 1000.0,
-        "seed": 1,
-    }
-    return Case(**(values | changes))
+    return Case(**({"model": MODEL} | changes))
 
 
 def identify(records, settings):

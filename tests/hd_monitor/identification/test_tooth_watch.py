@@ -29,20 +29,7 @@ def teeth(flexspline):
 
 
 def case(**changes):
-    values = {
-        "model": MODEL,
-        "motion": "dwell",
-        "speed": 1900.0,
-        "span": np.radians(110.0),
-        "duration": 10.0,
-        "snr": 20.0,
-        "colour": "white",
-        "spikes": 0.0,
-        "lost": 0.0,
-        "measured": False,
-        "rate": 1000.0,
-        "seed": 3,
-    }
+    values = {"model": MODEL, "speed": 1900.0, "span": np.radians(110.0), "duration": 10.0, "seed": 3}
     return Case(**(values | changes))
 
 
