@@ -143,6 +143,8 @@ class StretchBuilder:
         [Hz]; together with the lines' frequencies it sets the sampling rate that is needed and the integration step.
     inertial : bool
         Whether the sensor also feels gravity, as an IMU does.
+    keep_tones : bool
+        Whether foreign tones are left in.
     """
 
     reducer: Reducer
@@ -150,6 +152,7 @@ class StretchBuilder:
     load_orders: tuple[int, ...]
     natural_frequency: float
     inertial: bool = False
+    keep_tones: bool = False
 
     def build(self, records: Sequence[Record], torque: float | None) -> Stretch:
         """Join successive records, each of which continues the one before it.
@@ -219,9 +222,10 @@ class StretchBuilder:
             parts.append(motion.acceleration[:, None])
         if self.inertial:
             parts.append(np.stack([np.cos(motion.angle), np.sin(motion.angle)], axis=1))
-        tones = foreign_tones(values, motion.step, *self._own_lines(motion))
-        if tones.size:
-            parts.append(tone_columns(tones, size, motion.step))
+        if not self.keep_tones:
+            tones = foreign_tones(values, motion.step, *self._own_lines(motion))
+            if tones.size:
+                parts.append(tone_columns(tones, size, motion.step))
         columns = np.concatenate(parts, axis=1) * used[:, None]
         columns /= np.linalg.norm(columns, axis=0) + 1e-300
         squares, directions = np.linalg.eigh(columns.T @ columns)

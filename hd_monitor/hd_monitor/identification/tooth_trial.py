@@ -43,16 +43,6 @@ class Lead(NamedTuple):
     gain: float
 
 
-class ToneKeepingBuilder(StretchBuilder):
-    """Makes stretches without taking foreign tones off, which at one speed may be the lines of other teeth."""
-
-    __slots__ = ()
-
-    def _own_lines(self, motion: object) -> tuple[FloatArray, float]:
-        """Nothing is foreign: lines may be at any frequency."""
-        return np.array([[0.0, math.inf]]), 0.0
-
-
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class ToothTrial:
     """The circumstances under which tooth numbers are tried.
@@ -125,12 +115,13 @@ class ToothTrial:
 
     def _fit(self, reducer: Reducer, active: BoolArray, starts: Sequence[FloatArray] | None) -> Fit | None:
         """Fit teeth from some starts, or from the best values known; None where that is not possible."""
-        builder = ToneKeepingBuilder(
+        builder = StretchBuilder(
             reducer=reducer,
             harmonics=self.unknowns.harmonics,
             load_orders=self.unknowns.load_orders,
             natural_frequency=self.given.natural_frequency,
             inertial=self.inertial,
+            keep_tones=True,  # at one speed they may be these teeth's lines
         )
         try:
             stretches = [builder.build([record], None) for record in self._records()]
