@@ -32,7 +32,7 @@ setup(
     entry_points={
         "console_scripts": [
             "hd-monitor = hd_monitor.cli.main:main",
-            "hd_monitor_node = hd_monitor.ros.node:main",
+            "hd_monitor_node = hd_monitor.ros.__main__:main",
         ],
     },
 )

@@ -26,7 +26,7 @@ setup(
     extras_require={"offline": ["rosbags>=0.10.11", "pyyaml>=6.0"], "test": ["pytest"]},
     entry_points={
         "console_scripts": [
-            "hd_sim_node = hd_sim_node.node:main",
+            "hd_sim_node = hd_sim_node.__main__:main",
             "hd-sim-bag = hd_sim_node.bag_command:main",
         ],
     },

@@ -15,6 +15,10 @@ from typing import Any
 import hypothesis
 import pytest
 
+from hd_monitor.threads import use_one_thread
+
+use_one_thread()  # as every process of ours does; those started by tests inherit it
+
 HAVE_ROS = importlib.util.find_spec("rclpy") is not None
 NO_ROS = "rclpy is not installed here: no ROS 2 to test on"
 DOMAINS = range(1, 102)  # above them, DDS ports run into the system's ephemeral ones

@@ -1,6 +1,5 @@
 """The node ``hd_sim_node``: a simulated rig that publishes what hd_monitor listens to."""
 
-import sys
 import time
 from collections.abc import Sequence
 from typing import Any
@@ -192,7 +191,3 @@ class HdSimNode(ManagedNode):
 def main(args: list[str] | None = None) -> int:
     """Run the node until it is interrupted or has ended; return 0, or 2 for parameters with which no rig can run."""
     return run(NAME, HdSimNode, args)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

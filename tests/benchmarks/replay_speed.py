@@ -8,6 +8,7 @@ Wanted: blocks at least 1000 times, single samples at 1 kHz at least 100 times, 
 """
 
 import argparse
+import os
 import subprocess
 import sys
 import tempfile
@@ -15,6 +16,8 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # as every command does, see hd_monitor.threads
 
 from rosbags.rosbag2 import StoragePlugin, Writer
 

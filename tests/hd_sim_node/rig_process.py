@@ -4,7 +4,7 @@ import itertools
 
 from hd_monitor.contract import NANOSECONDS, unpack_block
 
-MODULE = "hd_sim_node.node"
+MODULE = "hd_sim_node"
 NODE = "hd_sim_node"
 BRIEF = {
     "programme": "fixed",

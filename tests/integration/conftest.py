@@ -10,7 +10,7 @@ import pytest
 
 from hd_monitor.contract import Block, pack_block
 
-MONITOR, RIG = "hd_monitor.ros.node", "hd_sim_node.node"
+MONITOR, RIG = "hd_monitor.ros", "hd_sim_node"
 OK, WARN, ERROR = 0, 1, 2
 QUICK = ("time_scale:=10.0", "wait_for_subscribers:=1", "programme:=dwell", "dwell.first:=400.0", "dwell.last:=1000.0")
 """A rig that runs through 400, 500 … 1000 rpm and back in about four seconds."""

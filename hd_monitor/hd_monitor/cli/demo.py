@@ -34,8 +34,8 @@ from .domain import LAST_DOMAIN, free_domain
 
 DEFECTS = ("flexspline", "circular_spline", "both", "none")
 TIME_SCALE = 8.0
-SIMULATOR = ("hd_sim_node", "hd_sim_node.node")
-MONITOR = ("hd_monitor_node", "hd_monitor.ros.node")
+SIMULATOR = ("hd_sim_node", "hd_sim_node")
+MONITOR = ("hd_monitor_node", "hd_monitor.ros")
 PATIENCE = 60.0
 """Seconds without anything new on /diagnostics after which the demo gives up."""
 INPUT_TIMEOUT = 3.0

@@ -1,6 +1,5 @@
 """The node ``hd_monitor_node``: any number of joints, from their topics to /diagnostics."""
 
-import sys
 from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray
@@ -209,7 +208,3 @@ class HdMonitorNode(ManagedNode):
 def main(args: list[str] | None = None) -> int:
     """Run the node until it is interrupted; return 0, or 2 for parameters with which nothing can be watched."""
     return run(NAME, HdMonitorNode, args)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -55,7 +55,7 @@ def test_the_deepest_queue_still_drops_the_oldest_message_and_not_the_newest(pee
 def test_the_node_warns_of_a_queue_that_cannot_be_so_deep(start_module: Any, peer: Any) -> None:
     from hd_monitor.ros.queue import most_messages
 
-    node = start_module("hd_monitor.ros.node", "--ros-args", "-p", "input.queue_seconds:=60.0")
+    node = start_module("hd_monitor.ros", "--ros-args", "-p", "input.queue_seconds:=60.0")
     peer.until(lambda: "watching joint" in node.output, "the node")
     warned = "the queues hold 5 s; ask for less" in node.output
     assert warned == (most_messages() < 60_000)

@@ -1,0 +1,46 @@
+"""Every process of ours keeps linear algebra on one thread, unless the environment says otherwise."""
+
+import os
+import subprocess
+import sys
+
+import pytest
+
+VARIABLE = "OPENBLAS_NUM_THREADS"
+
+
+def output_of(script: str, **environment: str) -> str:
+    """What a fresh interpreter prints, which inherits nothing about threads."""
+    outer = {name: value for name, value in os.environ.items() if name != VARIABLE}
+    done = subprocess.run(
+        [sys.executable, "-c", script], env=outer | environment, capture_output=True, text=True, check=True
+    )
+    return done.stdout.strip()
+
+
+@pytest.mark.parametrize(("environment", "threads"), [({}, "1"), ({VARIABLE: "3"}, "3")])
+def test_one_thread_unless_the_environment_says_otherwise(environment: dict[str, str], threads: str) -> None:
+    script = f"import os; from hd_monitor.threads import use_one_thread as u; u(); print(os.environ['{VARIABLE}'])"
+    assert output_of(script, **environment) == threads
+
+
+@pytest.mark.parametrize("module", ["hd_monitor.cli.main", "hd_monitor.ros.__main__", "hd_sim_node.__main__"])
+def test_an_executable_says_so_before_numpy_comes(module: str) -> None:
+    """Numpy asks for the number when it is imported: later it would be too late."""
+    script = f"""
+import os, sys
+import {module} as executable
+assert "{VARIABLE}" not in os.environ, "importing a module must not change the environment"
+assert "numpy" not in sys.modules
+class Found(Exception): ...
+class Watch:
+    def find_spec(self, name, path=None, target=None):
+        if name == "numpy":
+            raise Found
+sys.meta_path.insert(0, Watch())
+try:
+    executable.main(["parameters"])
+except Found:
+    print(os.environ.get("{VARIABLE}"))
+"""
+    assert output_of(script) == "1"
