@@ -85,9 +85,8 @@ def _spikes(values: FloatArray) -> Places:
         largest = float(known.max(initial=0.0))
     if known.size < 16:
         return _NOWHERE
-    # The lower of two middle values stands for the median where it decides that nothing sticks out
-    middle = np.partition(known, (known.size - 1) // 2)[(known.size - 1) // 2]
-    if largest <= _SPIKE * 1.4826 * float(middle):
+    # Where most are not far below the largest, the median is not either: counting them is quicker than the median
+    if 2 * int(np.count_nonzero(known >= largest / (_SPIKE * 1.4826))) > known.size + 1:
         return _NOWHERE
     limit = _SPIKE * 1.4826 * float(np.median(known))
     if limit == 0.0 or not (known > limit).any():
