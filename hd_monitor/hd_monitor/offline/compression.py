@@ -2,6 +2,8 @@
 
 import importlib
 import shutil
+from functools import cache
+from itertools import repeat
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +13,7 @@ MAGIC = b"\x28\xb5\x2f\xfd"
 _ZSTANDARD = ("compression.zstd", "backports.zstd", "zstandard")  # Python's own, then by rosbags' age
 
 
+@cache
 def _module() -> Any:
     for name in _ZSTANDARD:
         try:
@@ -20,9 +23,13 @@ def _module() -> Any:
     raise ModuleNotFoundError("no module for Zstandard", name="zstandard")
 
 
-def _decompressor() -> Any:
-    made = _module().ZstdDecompressor()
-    return made.decompressobj() if hasattr(made, "decompressobj") else made
+def _decompressor(kind: str) -> Any:
+    if kind == "lz4":
+        return importlib.import_module("lz4.frame").LZ4FrameDecompressor()
+    if kind == "zstd":
+        made = _module().ZstdDecompressor()
+        return made.decompressobj() if hasattr(made, "decompressobj") else made
+    raise ValueError(f"its compression {kind!r} is unknown")
 
 
 def decompress(data: bytes) -> bytes:
@@ -33,7 +40,17 @@ def decompress(data: bytes) -> bytes:
     Exception
         If the data is damaged; the class is the module's own.
     """
-    return bytes(_decompressor().decompress(data))
+    return decompress_leniently("zstd", data)
+
+
+def decompress_where_packed(messages: list[bytes]) -> list[bytes]:
+    """Decompress those messages that are compressed.
+
+    A file taken out of its folder has lost the note that each of its messages is compressed.
+    """
+    if not any(map(bytes.startswith, messages, repeat(MAGIC))):
+        return messages
+    return [decompress(message) if message.startswith(MAGIC) else message for message in messages]
 
 
 def decompress_leniently(kind: str, data: bytes) -> bytes:
@@ -46,13 +63,29 @@ def decompress_leniently(kind: str, data: bytes) -> bytes:
     Exception
         If the data is damaged; the class is the module's own.
     """
-    if kind == "":
+    return bytes(_decompressor(kind).decompress(data)) if kind else data
+
+
+def decompress_whole(kind: str, data: bytes) -> bytes:
+    """Return the contents of a chunk or a message, by the name of its compression.
+
+    Raises
+    ------
+    ValueError
+        If the kind is neither ``''``, ``'zstd'`` nor ``'lz4'``, or the data is cut off.
+    Exception
+        If the data is damaged; the class is the module's own.
+    """
+    if not kind:
         return data
-    if kind == "zstd":
-        return decompress(data)
-    if kind == "lz4":
-        return bytes(importlib.import_module("lz4.frame").LZ4FrameDecompressor().decompress(data))
-    raise ValueError(f"its compression {kind!r} is unknown")
+    parts: list[bytes] = []
+    while data or not parts:  # one frame after the other
+        frame = _decompressor(kind)
+        parts.append(bytes(frame.decompress(data)))
+        if not frame.eof:
+            raise ValueError("its compressed data is cut off")
+        data = frame.unused_data or b""
+    return parts[0] if len(parts) == 1 else b"".join(parts)
 
 
 def decompress_file(source: Path, target: Path) -> None:

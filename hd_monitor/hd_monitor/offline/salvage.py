@@ -15,12 +15,21 @@ from typing import BinaryIO, NamedTuple
 
 from .compression import decompress_leniently
 from .errors import BagError
+from .mcap import (
+    CHANNEL,
+    CHUNK,
+    MAGIC,
+    MESSAGE,
+    SCHEMA,
+    Channels,
+    ChunkBody,
+    DamageError,
+    Records,
+    bare_message,
+    heads,
+)
 
-MCAP_MAGIC = b"\x89MCAP0\r\n"
 SQLITE_MAGIC = b"SQLite format 3\0"
-
-_CHANNEL, _SCHEMA, _MESSAGE, _CHUNK, _DATA_END = 0x04, 0x03, 0x05, 0x06, 0x0F
-_LARGEST_RECORD = 1 << 31
 
 
 class RawMessage(NamedTuple):
@@ -65,16 +74,15 @@ class DamagedMcap:
     def __init__(self, path: Path, note: Callable[[str], None]) -> None:
         self._path = path
         self._note = note
-        self._types: dict[int, str] = {}
-        self._channels: dict[int, tuple[str, str]] = {}
-        _check_beginning(path, MCAP_MAGIC, "an MCAP file")
+        self._channels = Channels()
+        _check_beginning(path, MAGIC, "an MCAP file")
 
     def topics(self) -> list[RawTopic]:
         """Find the topics and count their messages, in one walk through the file."""
         counts: dict[tuple[str, str], int] = {}
         for channel, _, _ in self._walk(lambda _: None):
             counts[channel] = counts.get(channel, 0) + 1
-        for channel in self._channels.values():
+        for channel in self._channels.topics.values():
             counts.setdefault(channel, 0)
         return [RawTopic(name, kind, count) for (name, kind), count in counts.items()]
 
@@ -84,76 +92,44 @@ class DamagedMcap:
             yield RawMessage(name, time, data)
 
     def _walk(self, note: Callable[[str], None]) -> Iterator[tuple[tuple[str, str], int, bytes]]:
+        topics = self._channels.topics
         with self._path.open("rb") as file:
-            file.seek(len(MCAP_MAGIC))
-            for code, body in _records(file, self._path.name, note):
-                if code != _CHUNK:
-                    yield from self._record(code, body)
+            for code, body in self._records(file, note):
+                if code == CHUNK:
+                    found = self._chunk(body, note)
+                elif code == MESSAGE:
+                    found = bare_message(body)
+                else:
+                    self._channels.learn(code, body)
                     continue
-                try:
-                    size, content = _unpack_chunk(body)
-                except Exception as error:  # the decompressors raise whatever their authors chose
-                    note(f"{self._path.name}: a damaged chunk was left out ({_reason(error)})")
-                    continue
-                if len(content) < size:
-                    note(f"{self._path.name}: {size - len(content)} bytes of a chunk are missing")
-                found = [message for part in _split(content) for message in self._record(*part)]
-                yield from sorted(found, key=lambda message: message[1])
+                for channel, time, data in found:
+                    if channel in topics:
+                        yield topics[channel], time, data
 
-    def _record(self, code: int, body: bytes) -> Iterator[tuple[tuple[str, str], int, bytes]]:
-        if code == _MESSAGE and len(body) >= 22:
-            channel, time = struct.unpack_from("<H4xQ", body)
-            if channel in self._channels:
-                yield self._channels[channel], time, body[22:]
-        elif code == _SCHEMA and len(body) >= 6:
-            number, length = struct.unpack_from("<HI", body)
-            self._types[number] = body[6 : 6 + length].decode(errors="replace")
-        elif code == _CHANNEL and len(body) >= 8:
-            number, schema, length = struct.unpack_from("<HHI", body)
-            self._channels[number] = (body[8 : 8 + length].decode(errors="replace"), self._types.get(schema, ""))
+    def _records(self, file: BinaryIO, note: Callable[[str], None]) -> Iterator[tuple[int, bytes]]:
+        """Yield kind and body of each record that matters, up to the end or the first damage."""
+        try:
+            for head in heads(file, self._path.name):
+                if head.code == CHUNK or (head.code in (SCHEMA, CHANNEL, MESSAGE) and head.whole):
+                    file.seek(head.begin)
+                    yield head.code, file.read(head.end - head.begin)
+        except DamageError as damage:
+            note(str(damage))
 
-
-def _records(file: BinaryIO, name: str, note: Callable[[str], None]) -> Iterator[tuple[int, bytes]]:
-    """Yield (code, body) of each record that holds messages, channels or types, up to the end or the first damage."""
-    wanted = (_SCHEMA, _CHANNEL, _MESSAGE, _CHUNK)
-    while True:
-        head = file.read(9)
-        if len(head) < 9:
-            note(f"{name} is cut off after {file.tell()} bytes: the recording was not closed")
-            return
-        code, length = struct.unpack("<BQ", head)
-        if code == _DATA_END:
-            return
-        if length > _LARGEST_RECORD or not 0 < code < 0x80:
-            note(f"{name} is damaged at byte {file.tell() - 9}: what follows cannot be read")
-            return
-        body = file.read(length)
-        if len(body) < length:
-            note(f"{name} is cut off after {file.tell()} bytes: the recording was not closed")
-            if code == _CHUNK:
-                yield code, body
-            return
-        if code in wanted:
-            yield code, body
-
-
-def _unpack_chunk(body: bytes) -> tuple[int, bytes]:
-    """Return the announced size and the contents of a chunk, which is shorter than announced if it was cut off."""
-    size, length = struct.unpack_from("<Q4xI", body, 16)
-    compression = body[32 : 32 + length].decode()
-    (packed,) = struct.unpack_from("<Q", body, 32 + length)
-    return size, decompress_leniently(compression, body[40 + length : 40 + length + packed])
-
-
-def _split(content: bytes) -> Iterator[tuple[int, bytes]]:
-    """Yield (code, body) of each whole record of a chunk."""
-    at = 0
-    while at + 9 <= len(content):
-        code, length = struct.unpack_from("<BQ", content, at)
-        at += 9 + length
-        if at > len(content):
-            return
-        yield code, content[at - length : at]
+    def _chunk(self, body: bytes, note: Callable[[str], None]) -> Iterator[tuple[int, int, bytes]]:
+        try:
+            chunk = ChunkBody.parse(body)
+            content = decompress_leniently(chunk.compression, chunk.packed)
+        except Exception as error:  # the decompressors raise whatever their authors chose
+            note(f"{self._path.name}: a damaged chunk was left out ({_reason(error)})")
+            return iter(())
+        if len(content) < chunk.size:
+            note(f"{self._path.name}: {chunk.size - len(content)} bytes of a chunk are missing")
+        records = Records.parse(content)
+        for code, part in records.others:
+            self._channels.learn(code, part)
+        found = records.messages.by_time()
+        return zip(found.channels.tolist(), found.times.tolist(), found.data(), strict=True)
 
 
 def restore_length(source: Path, target: Path) -> bool:

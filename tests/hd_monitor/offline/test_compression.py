@@ -1,0 +1,38 @@
+"""What is taken as whole is whole; what is cut off still gives what precedes the cut, where that is asked for."""
+
+import pytest
+
+from hd_monitor.offline.compression import decompress_leniently, decompress_where_packed, decompress_whole
+
+lz4 = pytest.importorskip("lz4.frame")
+zstd = pytest.importorskip("backports.zstd")
+
+TEXT = b"".join(b"%d bottles of grease " % number for number in range(50_000))
+PACKED = {"zstd": zstd.compress(TEXT), "lz4": lz4.compress(TEXT)}
+
+
+@pytest.mark.parametrize("kind", ["zstd", "lz4"])
+def test_both_ways_agree_on_what_is_whole(kind: str) -> None:
+    assert decompress_whole(kind, PACKED[kind]) == decompress_leniently(kind, PACKED[kind]) == TEXT
+    assert decompress_whole(kind, 2 * PACKED[kind]) == 2 * TEXT
+
+
+@pytest.mark.parametrize("kind", ["zstd", "lz4"])
+def test_what_is_cut_off_is_whole_to_none_but_the_lenient(kind: str) -> None:
+    part = PACKED[kind][: len(PACKED[kind]) // 2]
+    assert TEXT.startswith(decompress_leniently(kind, part))
+    assert len(decompress_leniently(kind, part)) > 1000
+    with pytest.raises(ValueError, match="cut off"):
+        decompress_whole(kind, part)
+    with pytest.raises(ValueError, match="cut off"):
+        decompress_whole(kind, b"")
+
+
+def test_an_unknown_compression_is_named() -> None:
+    assert decompress_whole("", TEXT) is TEXT
+    with pytest.raises(ValueError, match="'brotli' is unknown"):
+        decompress_whole("brotli", TEXT)
+
+
+def test_only_packed_messages_are_unpacked() -> None:
+    assert decompress_where_packed([b"\0\1", PACKED["zstd"], b""]) == [b"\0\1", TEXT, b""]
