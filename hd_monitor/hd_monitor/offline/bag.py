@@ -5,29 +5,27 @@ import tempfile
 from collections import Counter
 from collections.abc import Collection, Iterator
 from contextlib import ExitStack, suppress
+from itertools import starmap
 from pathlib import Path
 from types import TracebackType
-from typing import NamedTuple, Self
+from typing import Self
 
 from rosbags.rosbag2 import Reader
 
+from .batches import Batch, in_batches
 from .compression import MAGIC, decompress, decompress_file
 from .errors import BagError
 from .salvage import DamagedMcap, DamagedSqlite, RawMessage, RawTopic, restore_length
+from .whole import read_whole
+from .windows import Window, windows
+
+__all__ = ["Bag", "Window"]
 
 STORAGE_SUFFIXES = (".mcap", ".db3")
 COMPRESSED_SUFFIXES = (".zstd", ".zst")
 WINDOW = 4_000_000_000
 """Recorded time [ns] that is handed over at once: long enough for bulk decoding, short enough for flat memory."""
 WINDOW_MESSAGES = 16_384
-
-
-class Window(NamedTuple):
-    """Messages of a few seconds: times of recording of the first and the last one [ns], and their bytes by topic."""
-
-    start: int
-    end: int
-    messages: dict[str, list[bytes]]
 
 
 class Bag:
@@ -85,52 +83,32 @@ class Bag:
 
         Where the recording turns out to be damaged, a note is made and what is still whole goes on coming.
         """
-        wanted = set(topics)
-        delivered: Counter[str] = Counter()
-        if self._reader is not None:
-            connections = [connection for connection in self._reader.connections if connection.topic in wanted]
-            if not connections:
-                return
-            try:
-                for connection, time, data in self._reader.messages(connections):
-                    # A file taken out of its folder has lost the note that each of its messages is compressed.
-                    data = decompress(data) if data[:4] == MAGIC else data
-                    yield RawMessage(connection.topic, time, data)
-                    delivered[connection.topic] += 1
-                return
-            except Exception as error:  # a parser of damaged files raises anything
-                self._note(
-                    f"{self.path.name} is damaged ({one_line(error)}); what is still whole is read piece by piece"
-                )
-                self._pieces = [self._piece(file) for file in self._files()]
-        for message in self._salvaged():
-            if message.topic not in wanted:
-                continue
-            if delivered[message.topic]:
-                delivered[message.topic] -= 1
-                continue
-            yield message
+        for batch in self._batches(topics):
+            yield from starmap(RawMessage, batch.rows())
 
     def windows(self, topics: Collection[str], *, pause: int = 0) -> Iterator[Window]:
         """Yield the messages of `topics` by windows of recorded time; memory stays flat in the bag's length.
 
         A `pause` [ns] in the recording, unless 0, begins a new window.
         """
-        collected: dict[str, list[bytes]] = {}
-        longest = pause or WINDOW
-        opened = latest = count = 0
-        for topic, time, data in self.messages(topics):
-            full = count >= WINDOW_MESSAGES or not opened <= time < opened + WINDOW or time - latest >= longest
-            if count and full:
-                yield Window(opened, latest, collected)
-                collected, count = {}, 0
-            if not count:
-                opened = time
-            collected.setdefault(topic, []).append(data)
-            latest = time
-            count += 1
-        if count:
-            yield Window(opened, latest, collected)
+        return windows(self._batches(topics), length=WINDOW, most=WINDOW_MESSAGES, pause=pause or WINDOW)
+
+    def _batches(self, topics: Collection[str]) -> Iterator[Batch]:
+        wanted = set(topics)
+        delivered: Counter[str] = Counter()
+        if self._reader is not None:
+            try:
+                for batch in read_whole(self._reader, wanted):
+                    yield batch
+                    delivered += batch.counts()
+                return
+            except Exception as error:  # a parser of damaged files raises anything
+                self._note(
+                    f"{self.path.name} is damaged ({one_line(error)}); what is still whole is read piece by piece"
+                )
+                self._pieces = [self._piece(file) for file in self._files()]
+        for piece in self._pieces:
+            yield from in_batches(self._salvaged(piece, wanted, delivered))
 
     def _open(self) -> tuple[RawTopic, ...]:
         if not self.path.exists():
@@ -207,14 +185,23 @@ class Bag:
         """Make a folder that lives as long as the bag is open."""
         return Path(self._stack.enter_context(tempfile.TemporaryDirectory(prefix="hd-monitor-")))
 
-    def _salvaged(self) -> Iterator[RawMessage]:
-        for piece in self._pieces:
-            for message in piece.messages():
-                if message.data[:4] != MAGIC:
-                    yield message
+    def _salvaged(
+        self, piece: DamagedMcap | DamagedSqlite, wanted: Collection[str], delivered: Counter[str]
+    ) -> Iterator[RawMessage]:
+        """Yield what is whole in a file, but for as many messages of each topic as have been delivered already."""
+        for message in piece.messages():
+            if message.topic not in wanted:
+                continue
+            data = message.data
+            if data[:4] == MAGIC:
+                try:
+                    data = decompress(data)
+                except Exception:  # a damaged message is missing: the gap is counted further on
                     continue
-                with suppress(Exception):  # a damaged message is missing: the gap is counted further on
-                    yield message._replace(data=decompress(message.data))
+            if delivered[message.topic]:
+                delivered[message.topic] -= 1
+                continue
+            yield message._replace(data=data)
 
     def _note(self, sentence: str) -> None:
         if sentence not in self.notes:
