@@ -6,6 +6,7 @@ cumulative sum (variation of constants), and only the few block ends are chained
 """
 
 import math
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -20,6 +21,7 @@ GAUSS_OFFSETS = (0.5 - np.sqrt(3.0) / 6.0, 0.5 + np.sqrt(3.0) / 6.0)
 _COMMUTATOR = np.sqrt(3.0) / 12.0
 _LARGEST_PHASE_STEP = 1.0  # rad of ωn per step: beyond it the Magnus series is no longer accurate
 _SERIES_REMAINDER = 1e-17
+_CACHED = 32_768  # numbers: of the sums that are worked on at once
 _LARGEST_CONDITION = 11.5  # natural logarithm of the condition of a block's matrix: five of sixteen digits at worst
 
 
@@ -163,7 +165,7 @@ class _Propagator:
     matrices since the block's start. Blocks are short enough for P to be well conditioned.
     """
 
-    __slots__ = ("_inverse", "_products", "_shape", "_steps")
+    __slots__ = ("_ends", "_inverse", "_products", "_shape", "_steps")
 
     def __init__(self, transition: FloatArray, longest: float) -> None:
         self._steps = transition.shape[2]
@@ -173,16 +175,14 @@ class _Propagator:
         padded = np.zeros((2, 2, blocks * length))
         padded[0, 0] = padded[1, 1] = 1.0
         padded[:, :, : self._steps] = transition
-        maps = np.ascontiguousarray(np.moveaxis(padded.reshape(2, 2, blocks, length), 3, 0))
-        products = np.empty_like(maps)
-        product = np.zeros((2, 2, blocks))
-        product[0, 0] = product[1, 1] = 1.0
-        for j in range(length):
-            now, t = products[j], maps[j]
-            np.multiply(t[:, 0, None], product[0], out=now)
-            now += t[:, 1, None] * product[1]
-            product = now
-        p = self._products = np.ascontiguousarray(np.moveaxis(products, 0, 3)).reshape(2, 2, blocks * length)
+        products = padded.reshape(2, 2, blocks, length)
+        reach = 1
+        while reach < length:  # products of 2, 4, 8 … neighbours, up to those since the block's start
+            late, early = products[..., reach:], products[..., :-reach]
+            products[..., reach:] = late[:, 0, None] * early[None, 0] + late[:, 1, None] * early[None, 1]
+            reach *= 2
+        self._ends = np.ascontiguousarray(np.moveaxis(products[..., -1], 2, 0))
+        p = self._products = products.reshape(2, 2, blocks * length)
         self._inverse = np.array([[p[1, 1], -p[0, 1]], [-p[1, 0], p[0, 0]]]) / (p[0, 0] * p[1, 1] - p[0, 1] * p[1, 0])
 
     def chain(self, weights: FloatArray, forcing: FloatArray, start: FloatArray) -> FloatArray:
@@ -192,31 +192,44 @@ class _Propagator:
         states of shape (2, steps + 1, R).
         """
         (blocks, length), steps, inputs = self._shape, self._steps, forcing.shape[2]
-        inverse, p = self._inverse[:, :, :steps], self._products[..., None]
+        states = np.empty((2, steps + 1, inputs))
+        states[:, 0] = start
+        together = max(1, _CACHED // (2 * length * inputs))  # blocks whose sums stay in the processor's cache
+        at = start
+        for first in range(0, blocks, together):
+            part = slice(first * length, min((first + together) * length, steps))
+            at = self._chain(weights[..., part], forcing[:, part], at, first, states[:, 1:][:, part])
+        return states
+
+    def _chain(
+        self, weights: FloatArray, forcing: FloatArray, at: FloatArray, first: int, states: FloatArray
+    ) -> FloatArray:
+        """Write the states of some blocks from number `first` on, and return the last one."""
+        length, (_, steps, inputs) = self._shape[1], forcing.shape
+        blocks = -(-steps // length)
+        here = slice(first * length, first * length + steps)
+        inverse, p = self._inverse[:, :, here], self._products[:, :, here, None]
         sums = np.zeros((2, blocks * length, inputs))
         term = np.empty((steps, inputs))
         for row in range(2):
-            first, second = (inverse[row, 0] * weight[0] + inverse[row, 1] * weight[1] for weight in weights)
-            np.multiply(first[:, None], forcing[0], out=sums[row, :steps])
-            np.multiply(second[:, None], forcing[1], out=term)
+            early, late = (inverse[row, 0] * weight[0] + inverse[row, 1] * weight[1] for weight in weights)
+            np.multiply(early[:, None], forcing[0], out=sums[row, :steps])
+            np.multiply(late[:, None], forcing[1], out=term)
             sums[row, :steps] += term
         by_block = sums.reshape(2, blocks, length, inputs)
         np.cumsum(by_block, axis=2, out=by_block)
-        ends = np.moveaxis(self._products.reshape(2, 2, blocks, length)[..., -1], 2, 0)
+        ends = self._ends[first : first + blocks]
         gained = ends @ np.moveaxis(by_block[:, :, -1], 1, 0)
         starts = np.empty((blocks, 2, inputs))
-        at = start
         for block in range(blocks):
             starts[block] = at
             at = ends[block] @ at + gained[block]
         by_block += np.moveaxis(starts, 0, 1)[:, :, None]
-        states = np.empty((2, steps + 1, inputs))
-        states[:, 0] = start
         for row in range(2):
-            np.multiply(p[row, 0, :steps], sums[0, :steps], out=states[row, 1:])
-            np.multiply(p[row, 1, :steps], sums[1, :steps], out=term)
-            states[row, 1:] += term
-        return states
+            np.multiply(p[row, 0], sums[0, :steps], out=states[row])
+            np.multiply(p[row, 1], sums[1, :steps], out=term)
+            states[row] += term
+        return at
 
 
 def _exponential_and_phi(exponent: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -224,24 +237,23 @@ def _exponential_and_phi(exponent: FloatArray) -> tuple[FloatArray, FloatArray]:
     trace = exponent[0, 0] + exponent[1, 1]
     determinant = exponent[0, 0] * exponent[1, 1] - exponent[0, 1] * exponent[1, 0]
     norm = float(np.abs(exponent).sum(axis=1).max(initial=0.0))
-    # Ωⁿ = p Ω + q I, by Cayley-Hamilton; the sums over n are scalars
-    p, q = np.zeros_like(trace), np.ones_like(trace)
-    exp_p, exp_q = p.copy(), q.copy()
-    phi_p, phi_q = p.copy(), q.copy()
-    n, size = 0, 1.0
-    while size > _SERIES_REMAINDER:
+    # Ωⁿ = p[n] Ω - det p[n-1] I by Cayley-Hamilton, p[n+1] = trace p[n] - det p[n-1]; the sums over n are of scalars:
+    # with s[m] = Σ p[n] / (n+m)!, exp(Ω) = s[0] Ω + (1 - det s[1]) I and φ1(Ω) = s[1] Ω + (1 - det s[2]) I
+    before, power = np.zeros_like(trace), np.ones_like(trace)
+    sums = np.zeros((3, *trace.shape))
+    n, size = 1, norm
+    while True:
+        factor = 1.0 / math.factorial(n)
+        sums += np.array([factor, factor / (n + 1), factor / ((n + 1) * (n + 2))])[:, None] * power
+        if size <= _SERIES_REMAINDER:
+            break
+        before, power = power, trace * power - determinant * before
         n += 1
         size *= norm / n
-        p, q = trace * p + q, -determinant * p
-        factor = 1.0 / math.factorial(n)
-        exp_p += factor * p
-        exp_q += factor * q
-        factor /= n + 1
-        phi_p += factor * p
-        phi_q += factor * q
     results = []
-    for on_matrix, on_identity in ((exp_p, exp_q), (phi_p, phi_q)):
+    for on_matrix, next_sum in pairwise(sums):
         result = exponent * on_matrix
+        on_identity = 1.0 - determinant * next_sum
         result[0, 0] += on_identity
         result[1, 1] += on_identity
         results.append(result)
