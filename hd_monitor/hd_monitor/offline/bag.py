@@ -14,7 +14,7 @@ from rosbags.rosbag2 import Reader
 
 from .batches import Batch, in_batches
 from .compression import MAGIC, decompress, decompress_file
-from .errors import BagError
+from .errors import BagError, one_line
 from .salvage import DamagedMcap, DamagedSqlite, RawMessage, RawTopic, restore_length
 from .whole import read_whole
 from .windows import Window, windows
@@ -206,11 +206,6 @@ class Bag:
     def _note(self, sentence: str) -> None:
         if sentence not in self.notes:
             self.notes.append(sentence)
-
-
-def one_line(error: BaseException) -> str:
-    """Return an error's message on one line; its class's name if it has none."""
-    return " ".join(str(error).split()).rstrip(".") or type(error).__name__
 
 
 def _close_quietly(reader: Reader) -> None:

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import BinaryIO, NamedTuple
 
 from .compression import decompress_leniently
-from .errors import BagError
+from .errors import BagError, one_line
 from .mcap import (
     CHANNEL,
     CHUNK,
@@ -121,7 +121,7 @@ class DamagedMcap:
             chunk = ChunkBody.parse(body)
             content = decompress_leniently(chunk.compression, chunk.packed)
         except Exception as error:  # the decompressors raise whatever their authors chose
-            note(f"{self._path.name}: a damaged chunk was left out ({_reason(error)})")
+            note(f"{self._path.name}: a damaged chunk was left out ({one_line(error)})")
             return iter(())
         if len(content) < chunk.size:
             note(f"{self._path.name}: {chunk.size - len(content)} bytes of a chunk are missing")
@@ -176,7 +176,7 @@ class DamagedSqlite:
                 rows = database.execute("SELECT id, name, type FROM topics").fetchall()
             self._topics = {int(number): (str(name), str(kind)) for number, name, kind in rows}
         except Exception as error:  # a damaged file also yields text that is none and numbers that are none
-            reason = f"{path} is damaged in its list of topics ({_reason(error)}); give another recording"
+            reason = f"{path} is damaged in its list of topics ({one_line(error)}); give another recording"
             raise BagError(reason) from None
 
     def topics(self) -> list[RawTopic]:
@@ -206,8 +206,4 @@ class DamagedSqlite:
                     if number in self._topics and isinstance(time, int) and isinstance(data, bytes):
                         yield self._topics[number], time, data
         except Exception as error:  # a damaged file also yields text that is none
-            note(f"{self._path.name} is damaged ({_reason(error)}): what follows cannot be read")
-
-
-def _reason(error: Exception) -> str:
-    return " ".join(str(error).split()) or type(error).__name__
+            note(f"{self._path.name} is damaged ({one_line(error)}): what follows cannot be read")
