@@ -90,10 +90,25 @@ def test_a_recorded_folder_gives_what_rosbags_gives(
     assert by_us(path, topics) == (by_rosbags(path, topics), [])
 
 
-def test_a_sqlite_file_gives_what_rosbags_gives(tmp_path: Path) -> None:
-    path = rec.write(tmp_path / "bag", rec.small(40.0), storage=rec.SQLITE)
+@pytest.mark.parametrize("compression", [None, "file", "message"])
+@pytest.mark.parametrize("topics", [("/joint_states",), ("/joint_states", "/torsional_acceleration/block"), ("/x",)])
+def test_a_database_gives_what_rosbags_gives(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, topics: tuple[str, ...], compression: str | None
+) -> None:
+    path = rec.write(tmp_path / "bag", rec.small(40.0), storage=rec.SQLITE, compression=compression)
+    expected = by_rosbags(path, topics)
+    monkeypatch.setattr(rec.rosbag2.Reader, "messages", not_in_bulk)
+    assert by_us(path, topics) == (expected, [])
+
+
+def test_rows_of_equal_times_come_in_the_order_in_which_they_were_written(tmp_path: Path) -> None:
+    in_order = sorted(rec.small(3.0), key=lambda event: event.time)
+    events = [event._replace(time=event.time // 10**9 * 10**9) for event in in_order]
+    path = rec.write(tmp_path / "bag", events, storage=rec.SQLITE)
     topics = ("/joint_states", "/torsional_acceleration/block")
-    assert by_us(path, topics) == (by_rosbags(path, topics), [])
+    rows, notes = by_us(path, topics)
+    assert (rows, notes) == (by_rosbags(path, topics), [])
+    assert [topic for topic, _, _ in rows] == [event.topic for event in events]
 
 
 def split_bag(folder: Path, files: dict[str, list[list[Sent]]], mode: str = "") -> Path:
