@@ -73,27 +73,26 @@ class MotionTrack:
         self._times = np.empty(0)
         self._rows = np.empty((0, 3))
 
-    def extend(self, times: FloatArray, rows: FloatArray) -> int:
+    def extend(self, times: FloatArray, rows: FloatArray) -> BoolArray:
         """Append messages: times [s], shape (N,), increasing, and rows (position, velocity, effort), shape (N, 3).
 
-        Returns the number of messages left out: not finite in position, or not later than the one before.
+        Returns which ones were taken, shape (N,): finite in position, and later than the one before.
         """
         good = np.isfinite(rows[:, 0])
         if self._times.size:
             good &= times > self._times[-1]
         good[1:] &= times[1:] > times[:-1]
-        dropped = int(times.size - np.count_nonzero(good))
-        if dropped:
+        if not good.all():
             times, rows = times[good], rows[good]
         if not times.size:
-            return dropped
+            return good
         self._times = np.concatenate([self._times, times])
         self._rows = np.concatenate([self._rows, rows])
         angle = self._rows[:, 0]
         steps = angle[1:] - angle[:-1]
         if steps.size and (steps.max() > math.pi or steps.min() < -math.pi):
             self._rows[:, 0] = np.unwrap(angle)
-        return dropped
+        return good
 
     def forget(self, time: float) -> None:
         """Drop what is not needed to interpolate from `time` [s] on, and the messages of then and later.

@@ -122,10 +122,12 @@ class Recorder:
             order = np.argsort(stamps, kind="stable")
             stamps, rows = stamps[order], rows[order]
         times = _seconds(stamps, epoch)
-        dropped = self._track.extend(even_stamps(times, rows), rows)
-        self.count(motion_messages=int(stamps.size) - dropped, motion_faults=dropped)
-        if following.stamps.size:
-            self._track.extend(_seconds(following.stamps, epoch), following.values)
+        lent = _seconds(following.stamps, epoch)
+        taken = self._track.extend(
+            np.concatenate([even_stamps(times, rows), lent]), np.concatenate([rows, following.values])
+        )
+        dropped = stamps.size - int(np.count_nonzero(taken[: stamps.size]))
+        self.count(motion_messages=stamps.size - dropped, motion_faults=dropped)
         if dropped:
             self.count(last_fault="joint states without a finite position or with repeated stamps were left out")
             good = np.isfinite(rows[:, 0])

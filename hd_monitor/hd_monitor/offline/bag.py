@@ -23,7 +23,7 @@ __all__ = ["Bag", "Window"]
 
 STORAGE_SUFFIXES = (".mcap", ".db3")
 COMPRESSED_SUFFIXES = (".zstd", ".zst")
-WINDOW = 4_000_000_000
+WINDOW = 12_000_000_000
 """Recorded time [ns] that is handed over at once: long enough for bulk decoding, short enough for flat memory."""
 WINDOW_MESSAGES = 16_384
 

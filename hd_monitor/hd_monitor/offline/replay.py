@@ -85,7 +85,7 @@ def replay(
     Yields
     ------
     Replayed
-        Every assessment in the order of the stamps, joint by joint within a few seconds of recorded time; then each
+        Every assessment in the order of the stamps, joint by joint within a dozen seconds of recorded time; then each
         joint's last one.
     """
     known = identifiers or {}

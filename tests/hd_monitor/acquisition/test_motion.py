@@ -55,7 +55,7 @@ def test_bad_messages_are_left_out_and_counted() -> None:
     times = np.array([0.0, 0.01, 0.01, 0.02, 0.03])
     rows = np.column_stack([[0.0, 0.01, 9.0, np.nan, 0.03], np.ones(5), np.zeros(5)])
     track = MotionTrack()
-    assert track.extend(times, rows) == 2
+    assert track.extend(times, rows).tolist() == [True, True, False, False, True]
     assert track.at(np.array([0.02])).angle == pytest.approx(0.02)
 
 
