@@ -23,6 +23,8 @@ BLOCK_LABEL = "torsional_acceleration"
 BLOCK_OFFSET = 4
 """Values before the first sample: seconds, nanoseconds, sample period, sequence number."""
 
+_TOO_MUCH = (2.0**33, 1e9, 2.0**63)  # seconds, nanoseconds and sequence number from which none is meant
+
 MAX_ZOOM_BINS = 50
 """Viewers drop arrays of more than 100 values; a bin takes two."""
 
@@ -114,21 +116,26 @@ def unpack_blocks(
             f"a block announces {size} samples with stride {stride} but carries {data.shape[1]} values; "
             f"the contract asks for stride = size and {BLOCK_OFFSET} values before the samples"
         )
-    heads = data[:, :BLOCK_OFFSET].tolist()
-    return [_with_head(head, samples) for head, samples in zip(heads, data[:, BLOCK_OFFSET:], strict=True)]
+    heads, samples = data[:, :BLOCK_OFFSET], data[:, BLOCK_OFFSET:]
+    counts = heads[:, [0, 1, 3]]
+    starts = ((counts >= 0.0) & (counts == np.floor(counts)) & (counts < _TOO_MUCH)).all(axis=1)
+    runs = (heads[:, 2] > 0.0) & (heads[:, 2] < 10.0)
+    good = (starts & runs).tolist()
+    return [
+        Block(int(head[0]) * NANOSECONDS + int(head[1]), head[2], int(head[3]), values) if right else _complaint(head)
+        for head, values, right in zip(heads.tolist(), samples, good, strict=True)
+    ]
 
 
-def _with_head(head: list[float], samples: npt.NDArray[np.float64]) -> Block | LayoutError:
+def _complaint(head: list[float]) -> LayoutError:
+    """Say what is wrong with the values before a block's samples."""
     seconds, nanoseconds, period, sequence = head
-    whole = seconds.is_integer() and nanoseconds.is_integer() and sequence.is_integer()
-    if not (whole and 0.0 <= seconds < 2.0**33 and 0.0 <= nanoseconds < NANOSECONDS and sequence >= 0.0):
-        return LayoutError(
-            f"a block starts at {seconds!r} s {nanoseconds!r} ns with number {sequence!r}; the contract asks for "
-            "whole, non-negative values"
-        )
     if not 0.0 < period < 10.0:
         return LayoutError(f"a block's sample period is {period!r} s; the contract asks for the time between samples")
-    return Block(int(seconds) * NANOSECONDS + int(nanoseconds), period, int(sequence), samples)
+    return LayoutError(
+        f"a block starts at {seconds!r} s {nanoseconds!r} ns with number {sequence!r}; the contract asks for "
+        "whole, non-negative values"
+    )
 
 
 def zoom_layout(bins: int) -> tuple[Dimension, Dimension]:
