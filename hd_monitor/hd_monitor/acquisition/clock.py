@@ -58,8 +58,7 @@ def recover_clock(times: npt.NDArray[np.float64], period: float | None = None) -
     Notes
     -----
     Samples that arrive in another order than their stamps were either reordered on the way (sorting makes the stamps
-    even) or have jittering stamps (sorting would scramble the signal). Sorting is
-    done where it leaves even stamps.
+    even) or have jittering stamps (sorting would scramble the signal). Sorting is done where it leaves even stamps.
     """
     order, duplicates = np.arange(times.size), 0
     t, steps = times, times[1:] - times[:-1]

@@ -109,14 +109,14 @@ class Recorder:
         epoch, end : int
             Zero of the core's times and end of the period [ns].
         """
-        joint_samples = self._motion(motion, next_motion, epoch, end)
+        joint_samples = self._motion(motion, next_motion, epoch)
         angle = joint_samples.angle
         turning = angle.size > 0 and float(angle.max() - angle.min()) > _STANDING
         records, values = self._vibration(vibration, epoch, turning)
         self._track.forget((end - epoch) * _NS)
         return Harvest(records, joint_samples, values)
 
-    def _motion(self, motion: Samples, following: Samples, epoch: int, end: int) -> JointSamples:
+    def _motion(self, motion: Samples, following: Samples, epoch: int) -> JointSamples:
         stamps, rows = motion
         if stamps.size > 1 and not bool((stamps[1:] > stamps[:-1]).all()):
             order = np.argsort(stamps, kind="stable")
