@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.hd_monitor.offline import recordings as rec
 
-from hd_monitor.offline.bag import Bag
+from hd_monitor.offline.bag import WINDOW, Bag
 from hd_monitor.offline.errors import BagError
 
 BLOCKS, STATES = "/torsional_acceleration/block", "/joint_states"
@@ -51,7 +51,7 @@ def test_windows_hold_every_message_once_and_stay_short(tmp_path: Path) -> None:
     with Bag(path) as bag:
         windows = list(bag.windows(BOTH))
     assert sum(len(window.messages[STATES]) for window in windows) == 3000
-    assert max(len(window.messages[STATES]) for window in windows) <= 401
+    assert max(len(window.messages[STATES]) for window in windows) <= WINDOW // 10_000_000 + 1
     assert [window.end for window in windows] == sorted(window.end for window in windows)
 
 
