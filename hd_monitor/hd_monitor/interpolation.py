@@ -30,6 +30,17 @@ def hermite(
     return np.asarray(first + u * (rise + (1.0 - u) * (bend * (1.0 - u) + other_bend * u)))
 
 
+def cubics(
+    first: FloatArray, last: FloatArray, first_slope: FloatArray, last_slope: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Coefficients of :func:`hermite`'s polynomials in the place, the constant ones first.
+
+    They are worth their while where many places lie in each interval.
+    """
+    rise = last - first
+    return first, first_slope, 3.0 * rise - 2.0 * first_slope - last_slope, first_slope + last_slope - 2.0 * rise
+
+
 def linear(first: FloatArray, last: FloatArray, part: npt.ArrayLike) -> FloatArray:
     """Linear interpolation; see :func:`hermite`."""
     return np.asarray(first + np.asarray(part, dtype=np.float64) * (last - first))

@@ -1,4 +1,4 @@
-"""How many threads linear algebra may take: one, in every process that is ours."""
+"""How many threads linear algebra may take: one, in both nodes and in hd-monitor."""
 
 import os
 

@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from ..interpolation import cubics
 from .clock import recover_clock
 
 FloatArray = npt.NDArray[np.float64]
@@ -122,12 +123,9 @@ class MotionTrack:
         if not np.isfinite(velocity).all():
             velocity = np.where(np.isfinite(velocity), velocity, np.gradient(position, known))
         measured = np.isfinite(effort)
-        rise, first_slope, last_slope = position[1:] - position[:-1], velocity[:-1] * steps, velocity[1:] * steps
         polynomials = np.empty((10, steps.size))  # of every interval, then of the times: far fewer gathers and products
         polynomials[0], polynomials[1] = known[:-1], steps
-        polynomials[2], polynomials[3] = position[:-1], first_slope
-        polynomials[4] = 3.0 * rise - 2.0 * first_slope - last_slope
-        polynomials[5] = first_slope + last_slope - 2.0 * rise
+        polynomials[2:6] = cubics(position[:-1], position[1:], velocity[:-1] * steps, velocity[1:] * steps)
         polynomials[6], polynomials[7] = velocity[:-1], velocity[1:] - velocity[:-1]
         polynomials[8], polynomials[9] = effort[:-1], effort[1:] - effort[:-1]
         start, length, q0, q1, q2, q3, v0, v1, e0, e1 = np.repeat(polynomials, _in_each(known, times), axis=1)
