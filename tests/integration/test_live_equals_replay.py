@@ -27,7 +27,7 @@ PARAMETERS = """
     diagnosis: {warn_index: 4e-2, error_index: 0.09, confirm_count: 3, confirm_window: 4}
 """
 RIG_PARAMETERS = (
-    "wait_for_subscribers:=2",
+    "wait_for_subscribers:=3",  # the monitor, the recorder and the gate
     "programme:=sweep",
     "duration:=16.0",
     "defect:=flexspline",
@@ -46,10 +46,22 @@ class Recorder:
     def __init__(self, peer: Any, sources: list[Source]) -> None:
         from hd_monitor.ros.subscriptions import DrainedSubscription
 
+        self._peer = peer
         self._subscriptions = {
             source: DrainedSubscription(peer.node, source, depth=100_000, reliability="reliable") for source in sources
         }
         self.messages: list[tuple[int, Source, bytes]] = []
+
+    def matched(self) -> bool:
+        """Whether every topic has a publisher that is known here."""
+        return all(self._peer.node.count_publishers(source.topic) for source in self._subscriptions)
+
+    def open_gate(self) -> None:
+        """Subscribe once more: the rig that waits for it starts now."""
+        from hd_monitor.ros.subscriptions import DrainedSubscription
+
+        for source in self._subscriptions:
+            DrainedSubscription(self._peer.node, source, depth=1, reliability="reliable")
 
     def drain(self) -> None:
         for source, subscription in self._subscriptions.items():
@@ -84,6 +96,13 @@ def test_every_live_status_is_replayed_value_by_value(
     recorder = Recorder(peer, [MOTION_SOURCE, VIBRATION_SOURCES[source]])
     start_module(MONITOR, "--ros-args", "--params-file", str(parameters))
     rig = start_module(RIG, *arguments_of((*RIG_PARAMETERS, f"publish:={publish}", "time_scale:=2.0")))
+
+    # A publisher that has found a subscriber may not yet have been found by it. What it sends in that time comes later,
+    # on one topic perhaps seconds later than on the other; the node then rightly gives up waiting, of which a recording
+    # made elsewhere knows nothing. So the rig starts when monitor and recorder know both publishers.
+    bench.until(recorder.matched, "the rig's publishers")
+    bench.until_status(lambda s: s.message.count("but sends nothing") == 2, "a monitor that knows both publishers")
+    recorder.open_gate()
 
     def ended() -> bool:
         recorder.drain()
