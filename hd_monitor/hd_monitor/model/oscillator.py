@@ -169,7 +169,8 @@ class _Propagator:
 
     def __init__(self, transition: FloatArray, longest: float) -> None:
         self._steps = transition.shape[2]
-        length = max(1, min(math.isqrt(self._steps), int(min(longest, 1e9))))
+        # Longer than wide: block ends are chained in Python
+        length = max(1, min(3 * math.isqrt(self._steps), int(min(longest, 1e9))))
         blocks = -(-self._steps // length)
         self._shape = blocks, length
         padded = np.zeros((2, 2, blocks * length))
@@ -239,17 +240,18 @@ def _exponential_and_phi(exponent: FloatArray) -> tuple[FloatArray, FloatArray]:
     norm = float(np.abs(exponent).sum(axis=1).max(initial=0.0))
     # Ωⁿ = p[n] Ω - det p[n-1] I by Cayley-Hamilton, p[n+1] = trace p[n] - det p[n-1]; the sums over n are of scalars:
     # with s[m] = Σ p[n] / (n+m)!, exp(Ω) = s[0] Ω + (1 - det s[1]) I and φ1(Ω) = s[1] Ω + (1 - det s[2]) I
-    before, power = np.zeros_like(trace), np.ones_like(trace)
-    sums = np.zeros((3, *trace.shape))
-    n, size = 1, norm
-    while True:
-        factor = 1.0 / math.factorial(n)
-        sums += np.array([factor, factor / (n + 1), factor / ((n + 1) * (n + 2))])[:, None] * power
-        if size <= _SERIES_REMAINDER:
-            break
-        before, power = power, trace * power - determinant * before
-        n += 1
-        size *= norm / n
+    terms, size = 1, norm
+    while size > _SERIES_REMAINDER:
+        terms += 1
+        size *= norm / terms
+    powers = np.empty((terms, trace.size))
+    powers[0] = 1.0
+    if terms > 1:
+        powers[1] = trace
+    for n in range(2, terms):
+        np.multiply(trace, powers[n - 1], out=powers[n])
+        powers[n] -= determinant * powers[n - 2]
+    sums = np.array([[1.0 / math.factorial(n + m) for n in range(1, terms + 1)] for m in range(3)]) @ powers
     results = []
     for on_matrix, next_sum in pairwise(sums):
         result = exponent * on_matrix
