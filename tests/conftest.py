@@ -15,9 +15,9 @@ from typing import Any
 import hypothesis
 import pytest
 
-from hd_monitor.threads import use_one_thread
+from hd_monitor.process import set_up_process
 
-use_one_thread()  # as every process of ours does; those started by tests inherit it
+set_up_process()  # as every process of ours does; those started by tests inherit it
 
 HAVE_ROS = importlib.util.find_spec("rclpy") is not None
 NO_ROS = "rclpy is not installed here: no ROS 2 to test on"

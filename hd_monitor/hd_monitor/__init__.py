@@ -1,6 +1,6 @@
 """Tells which spline of a harmonic drive is worn, from torsional vibration and the joint's angle.
 
-Everything here but `ros`, `offline`, `paper`, `cli` and `threads`, which their executables call, is the core: numpy and
+Everything here but `ros`, `offline`, `paper`, `cli` and `process`, which their executables call, is the core: numpy and
 scipy only, no clock, no input or output.
 """
 

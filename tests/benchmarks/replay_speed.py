@@ -8,7 +8,6 @@ Wanted: blocks at least 1000 times, single samples at 1 kHz at least 100 times, 
 """
 
 import argparse
-import os
 import subprocess
 import sys
 import tempfile
@@ -17,7 +16,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # as every command does, see hd_monitor.threads
+from hd_monitor.process import set_up_process
+
+set_up_process()  # as every command does, before numpy comes
 
 from rosbags.rosbag2 import StoragePlugin, Writer
 

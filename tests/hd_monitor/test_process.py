@@ -1,6 +1,7 @@
-"""Every process of ours keeps linear algebra on one thread, unless the environment says otherwise."""
+"""Every process of ours keeps linear algebra on one thread, unless told otherwise, and freed memory at hand."""
 
 import os
+import platform
 import subprocess
 import sys
 
@@ -20,7 +21,7 @@ def output_of(script: str, **environment: str) -> str:
 
 @pytest.mark.parametrize(("environment", "threads"), [({}, "1"), ({VARIABLE: "3"}, "3")])
 def test_one_thread_unless_the_environment_says_otherwise(environment: dict[str, str], threads: str) -> None:
-    script = f"import os; from hd_monitor.threads import use_one_thread as u; u(); print(os.environ['{VARIABLE}'])"
+    script = f"import os, hd_monitor.process as p; p.set_up_process(); print(os.environ['{VARIABLE}'])"
     assert output_of(script, **environment) == threads
 
 
@@ -44,3 +45,22 @@ except Found:
     print(os.environ.get("{VARIABLE}"))
 """
     assert output_of(script) == "1"
+
+
+@pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="another C library has another allocator")
+def test_freed_memory_is_not_mapped_again_and_again() -> None:
+    script = """
+import resource
+from hd_monitor.process import set_up_process
+set_up_process()
+import numpy as np
+def work():
+    arrays = [np.ones(40_000) for _ in range(8)]
+    return sum(float(array[0]) for array in arrays)
+work()
+before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
+for _ in range(20): work()
+print(resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before)
+"""
+    pages_of_a_round = 8 * 40_000 * 8 // 4096
+    assert int(output_of(script)) < pages_of_a_round

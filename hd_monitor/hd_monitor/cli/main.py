@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from typing import Protocol, cast
 
 from ..errors import HdMonitorError
-from ..threads import use_one_thread
+from ..process import set_up_process
 
 UNUSABLE_INPUT = 2
 """Exit status for input of which nothing can be said."""
@@ -40,7 +40,7 @@ class Command(Protocol):
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run ``hd-monitor`` and return its exit status: 0 done, 1 `--fail-on` met, 2 unusable input."""
-    use_one_thread()
+    set_up_process()
     words = list(sys.argv[1:] if argv is None else argv)
     parser = argparse.ArgumentParser(
         prog="hd-monitor", description="Watches harmonic-drive reducers and names the part that is going bad."

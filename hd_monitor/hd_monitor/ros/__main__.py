@@ -2,12 +2,12 @@
 
 import sys
 
-from ..threads import use_one_thread
+from ..process import set_up_process
 
 
 def main(args: list[str] | None = None) -> int:
     """Run the node; return its exit status."""
-    use_one_thread()
+    set_up_process()
     from .node import main as run  # it brings numpy along
 
     return run(args)
