@@ -39,8 +39,3 @@ def cubics(
     """
     rise = last - first
     return first, first_slope, 3.0 * rise - 2.0 * first_slope - last_slope, first_slope + last_slope - 2.0 * rise
-
-
-def linear(first: FloatArray, last: FloatArray, part: npt.ArrayLike) -> FloatArray:
-    """Linear interpolation; see :func:`hermite`."""
-    return np.asarray(first + np.asarray(part, dtype=np.float64) * (last - first))

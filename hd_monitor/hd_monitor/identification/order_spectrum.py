@@ -9,6 +9,7 @@ import numpy.typing as npt
 from scipy import fft
 
 from ..model.parameters import Dynamics
+from .directions import orthonormal
 from .drive import own_acceleration
 from .stretch import Stretch
 
@@ -128,10 +129,9 @@ def _levelled(stretch: Stretch, signals: FloatArray) -> FloatArray:
     columns = np.polynomial.legendre.legvander(np.linspace(-1.0, 1.0, len(stretch)), degree)
     own = own_acceleration(stretch.speed, stretch.period)
     if float(np.ptp(own)) > 0.0:
-        columns = np.concatenate([columns, own[:, None] / np.linalg.norm(own)], axis=1)
-    columns = columns * stretch.used[:, None]
-    fit = np.linalg.lstsq(columns, (signals * stretch.used).T, rcond=1e-10)[0]
-    return np.asarray((signals - (columns @ fit).T) * stretch.used)
+        columns = np.concatenate([columns, own[:, None]], axis=1)
+    slow, signals = orthonormal(columns * stretch.used[:, None]), signals * stretch.used
+    return np.asarray(signals - (signals @ slow) @ slow.T)
 
 
 def _equalised(signals: FloatArray, period: float, dynamics: Dynamics) -> FloatArray:

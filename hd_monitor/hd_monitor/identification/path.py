@@ -6,8 +6,9 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from ..interpolation import hermite, linear
-from ..reducer import Reducer
+from ..interpolation import cubics
+from ..model.oscillator import GAUSS_OFFSETS
+from ..reducer import WAVE_GENERATOR_LOBES, Reducer
 
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
@@ -68,33 +69,63 @@ class Path:
         return np.tile(np.repeat([True, False], harmonics), 2), swapped
 
 
-def path_along(
-    motion: Motion, reducer: Reducer, harmonics: int, load_orders: tuple[int, ...], places: FloatArray
-) -> Path:
-    """Return the path at `places`, in sample periods from the first sample, of any shape."""
-    left = np.minimum(places.astype(np.intp), motion.angle.size - 2)
-    right, part = left + 1, places - left
+def paths_along(
+    motion: Motion, reducer: Reducer, harmonics: int, load_orders: tuple[int, ...], substeps: int
+) -> tuple[Path, Path]:
+    """Return the path on an integration grid of `substeps` steps a sample, and at the Gauss points of its steps.
+
+    Their shapes are (steps + 1,), the last sample included, and (2, steps). Between samples the angle is a cubic,
+    whose slopes are the speeds; all else is linear.
+    """
+    parts = (np.arange(substeps) + np.array([[0.0], *([offset] for offset in GAUSS_OFFSETS)])) / substeps
     slopes = motion.speed * motion.step
-    q = hermite(motion.angle[left], motion.angle[right], slopes[left], slopes[right], part)
-    lines = np.empty((*q.shape, 4 * harmonics))
-    rates = np.empty(4 * harmonics)
-    for spline, order in enumerate(reducer.output_orders):
-        for k, power in enumerate(powers(np.exp(1j * order * q), harmonics)[1:]):
-            real = 2 * harmonics * spline + k
-            lines[..., real], rates[real] = power.real, (k + 1) * order
-            lines[..., real + harmonics], rates[real + harmonics] = -power.imag, (k + 1) * order
-    loads = np.empty((*q.shape, 2 * len(load_orders)))
-    turns = powers(np.exp(1j * q), max(load_orders, default=0))
-    for place, load_order in enumerate(load_orders):
-        loads[..., place], loads[..., place + len(load_orders)] = turns[load_order].real, -turns[load_order].imag
-    return Path(
-        lines=lines,
-        rates=rates,
-        loads=loads,
-        torque=linear(motion.torque[left], motion.torque[right], part),
-        speed=linear(motion.speed[left], motion.speed[right], part),
-        acceleration=linear(motion.acceleration[left], motion.acceleration[right], part),
+    q = _at_points(parts, motion.angle, *cubics(motion.angle[:-1], motion.angle[1:], slopes[:-1], slopes[1:]))
+    turn, lowest = np.exp(1j * q), reducer.output_orders[0]
+    first = np.exp(1j * lowest * q)
+    second = first * powers(turn, WAVE_GENERATOR_LOBES)[-1]  # the lobes are what the pair's orders differ by
+    rates = np.outer(
+        [lowest, lowest, lowest + WAVE_GENERATOR_LOBES, lowest + WAVE_GENERATOR_LOBES], 1 + np.arange(harmonics)
     )
+    lines = np.empty((q.size, *rates.shape))
+    for spline, unit in enumerate((first, second)):
+        for k, power in enumerate(powers(unit, harmonics)[1:]):
+            lines[:, 2 * spline, k] = power.real
+            np.negative(power.imag, out=lines[:, 2 * spline + 1, k])
+    loads = np.empty((q.size, 2 * len(load_orders)))
+    turns = powers(turn, max(load_orders, default=0))
+    for place, load_order in enumerate(load_orders):
+        loads[:, place], loads[:, place + len(load_orders)] = turns[load_order].real, -turns[load_order].imag
+    torque, speed, acceleration = (
+        _at_points(parts, values, values[:-1], np.diff(values))
+        for values in (motion.torque, motion.speed, motion.acceleration)
+    )
+    steps = (motion.angle.size - 1) * substeps
+
+    def path(points: slice, *shape: int) -> Path:
+        return Path(
+            lines=lines[points].reshape(*shape, -1),
+            rates=rates.ravel(),
+            loads=loads[points].reshape(*shape, -1),
+            torque=torque[points].reshape(shape),
+            speed=speed[points].reshape(shape),
+            acceleration=acceleration[points].reshape(shape),
+        )
+
+    return path(slice(steps + 1), steps + 1), path(slice(steps + 1, None), 2, steps)
+
+
+def _at_points(parts: FloatArray, samples: FloatArray, *coefficients: FloatArray) -> FloatArray:
+    """Evaluate polynomials in the place in each interval between samples, the constant coefficients first.
+
+    They are wanted at `parts` of each interval, shape (kinds, parts). The points come kind by kind, each in the order
+    of time, and after those of the first kind the last sample.
+    """
+    place = parts[:, :, None]
+    values = coefficients[-1]
+    for coefficient in coefficients[-2::-1]:
+        values = coefficient + place * values
+    points = np.moveaxis(values, 1, 2).reshape(len(parts), -1)
+    return np.concatenate([points[0], samples[-1:], points[1:].ravel()])
 
 
 def powers(unit: npt.NDArray[np.complex128], highest: int) -> list[npt.NDArray[np.complex128]]:

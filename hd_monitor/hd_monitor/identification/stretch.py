@@ -3,7 +3,6 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 import numpy.typing as npt
@@ -11,11 +10,11 @@ from scipy import fft
 
 from ..acquisition.record import Record
 from ..errors import ParameterError
-from ..model.oscillator import GAUSS_OFFSETS
 from ..reducer import Reducer
 from .conditioning import condition
+from .directions import orthonormal
 from .drive import own_acceleration, smooth_torque
-from .path import Motion, Path, path_along
+from .path import Motion, Path, paths_along
 from .tones import foreign_tones, tone_columns
 
 FloatArray = npt.NDArray[np.float64]
@@ -186,12 +185,10 @@ class StretchBuilder:
                 f"{self.natural_frequency:g} Hz, ask for {steps} integration steps a sample, above {MOST_SUBSTEPS}: "
                 "such a signal shows nothing of them; sample faster"
             )
-        nodes = np.append(np.arange((angle.size - 1) * steps) / steps, angle.size - 1.0)
-        gauss = np.stack([nodes[:-1] + c / steps for c in GAUSS_OFFSETS])
         own = own_acceleration(speed, step)
         known = np.full(angle.size, torque) if torque is not None else smooth_torque(measured, angle, speed, own, step)
         motion = Motion(angle, speed, own, known, step)
-        along = partial(path_along, motion, self.reducer, self.harmonics, self.load_orders)
+        at_steps, at_gauss = paths_along(motion, self.reducer, self.harmonics, self.load_orders, steps)
         return Stretch(
             start=records[0].start + signal.first * period,
             period=step,
@@ -200,8 +197,8 @@ class StretchBuilder:
             angle=angle,
             speed=speed,
             substeps=steps,
-            at_steps=along(nodes),
-            at_gauss=along(gauss),
+            at_steps=at_steps,
+            at_gauss=at_gauss,
             slow=self._slow(motion, signal.values, signal.used),
             highest_frequency=signal.highest_frequency,
             raw_highest=0.5 / period,
@@ -226,11 +223,7 @@ class StretchBuilder:
             tones = foreign_tones(values, motion.step, *self._own_lines(motion))
             if tones.size:
                 parts.append(tone_columns(tones, size, motion.step))
-        columns = np.concatenate(parts, axis=1) * used[:, None]
-        columns /= np.linalg.norm(columns, axis=0) + 1e-300
-        squares, directions = np.linalg.eigh(columns.T @ columns)
-        kept = squares > 1e-10 * squares[-1]
-        return np.asarray(columns @ (directions[:, kept] / np.sqrt(squares[kept])))
+        return orthonormal(np.concatenate(parts, axis=1) * used[:, None])
 
     def _own_lines(self, motion: Motion) -> tuple[FloatArray, float]:
         """Frequencies [Hz] between which every group of lines is, and how far its side lines reach beyond."""

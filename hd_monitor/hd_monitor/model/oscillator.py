@@ -169,7 +169,7 @@ class _Propagator:
 
     def __init__(self, transition: FloatArray, longest: float) -> None:
         self._steps = transition.shape[2]
-        # Longer than wide: block ends are chained in Python
+        # Few and long: block ends are chained one by one
         length = max(1, min(3 * math.isqrt(self._steps), int(min(longest, 1e9))))
         blocks = -(-self._steps // length)
         self._shape = blocks, length
