@@ -40,15 +40,16 @@ class Batch(NamedTuple):
 
     @classmethod
     def of_rows(cls, rows: Iterable[tuple[Any, int, bytes]], name: Callable[[Any], str]) -> Self:
-        """Turn messages, at least one, into columns; `name` gives the topic from what stands in its place."""
+        """Turn messages, at least one, into columns; `name` gives the topic from the key that stands in its place."""
         sources, times, data = zip(*rows, strict=True)
-        topics = list(map(name, sources))
-        place = {topic: number for number, topic in enumerate(dict.fromkeys(topics))}
+        topics = {source: name(source) for source in dict.fromkeys(sources)}
+        names = list(dict.fromkeys(topics.values()))
+        place = {source: names.index(topic) for source, topic in topics.items()}
         try:
             stamps = np.fromiter(times, np.int64, len(times))
         except OverflowError:  # MCAP counts from 0 to 2**64, and damage makes use of it
             stamps = np.fromiter(times, np.uint64, len(times))
-        return cls(stamps, np.fromiter(map(place.__getitem__, topics), np.intp, len(topics)), list(place), list(data))
+        return cls(stamps, np.fromiter(map(place.__getitem__, sources), np.intp, len(sources)), names, list(data))
 
 
 def in_batches(rows: Iterator[tuple[Any, int, bytes]], name: Callable[[Any], str] = str) -> Iterator[Batch]:

@@ -1,7 +1,6 @@
 """Whole recordings: rosbags opens them and knows their order; what it lists chunk or row by row is read in bulk."""
 
 from collections.abc import Collection, Iterator, Mapping
-from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +24,8 @@ def read_whole(reader: Reader, wanted: Collection[str]) -> Iterator[Batch]:
         return
     files = _files(reader)
     if files is None:
-        for batch in in_batches(reader.messages(connections), attrgetter("topic")):
+        rows = ((connection.topic, time, data) for connection, time, data in reader.messages(connections))
+        for batch in in_batches(rows):
             yield batch._replace(data=decompress_where_packed(batch.data))
         return
     types = {(connection.topic, connection.msgtype) for connection in connections}
