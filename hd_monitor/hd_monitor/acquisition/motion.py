@@ -114,10 +114,9 @@ class MotionTrack:
 
         The angle follows the cubic (Hermite) that has the messages' positions and velocities at both ends.
         """
-        unknown = np.full(times.size, np.nan)
         known, rows = self._times, self._rows
         if known.size < 2 or not times.size:
-            return Motion(unknown, unknown, unknown)
+            return Motion(*np.full((3, times.size), np.nan))
         steps = known[1:] - known[:-1]
         position, velocity, effort = rows[:, 0], rows[:, 1], rows[:, 2]
         if not np.isfinite(velocity).all():
@@ -137,7 +136,7 @@ class MotionTrack:
         elif np.count_nonzero(measured) >= max(2, _ENOUGH_EFFORT * effort.size):
             torque = np.interp(times, known[measured], effort[measured])
         else:
-            torque = unknown
+            torque = np.full(times.size, np.nan)
         outside: list[slice | BoolArray] = []
         if times[0] < known[0]:
             outside.append(slice(0, int(times.searchsorted(known[0]))))

@@ -1,6 +1,6 @@
 """From evidence to a verdict: limits with hysteresis, confidence, confirmation N of M, latch."""
 
-from collections import Counter, deque
+from collections import deque
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -123,7 +123,7 @@ class Judge:
         now = self._of_now(evidence, missing)
         self._recent.append((now.component, now.level))
         shown = self._shown
-        count = Counter(self._recent)[(now.component, now.level)]
+        count = self._recent.count((now.component, now.level))
         same = shown is not None and (shown.component, shown.level) == (now.component, now.level)
         if same or count >= self._limits.confirm_count:
             shown = now
