@@ -9,6 +9,7 @@ from tests.hd_monitor.monitored import BLOCK, EPOCH, SETTINGS, UNITS, Recording,
 from hd_monitor.assessment import Assessment
 from hd_monitor.diagnosis.status import Status, status_of
 from hd_monitor.diagnosis.verdict import Component, Level
+from hd_monitor.identification.identifier import LONGEST_PERIOD, LONGEST_STRETCH
 from hd_monitor.monitor import Monitor
 from hd_monitor.settings import JointSettings
 
@@ -23,6 +24,22 @@ def test_names_the_component(component: Component) -> None:
     verdict = latest(run(Recording(component))).verdict
     assert verdict.component is component
     assert verdict.level is (Level.OK if component is Component.NONE else Level.ERROR)
+
+
+def test_a_defect_that_appears_at_once_is_noticed_at_the_next_look() -> None:
+    """By then the identifier knows the sound reducer so well that it looks at a second a minute."""
+    turns = 48.0  # s; whole ones, so that the angle goes on
+    sound, worn = Recording(Component.NONE, seconds=turns), Recording(Component.FLEXSPLINE, seconds=160.0)
+    monitor = run(sound)
+    assert latest(monitor).verdict.component is Component.NONE
+    later = round(turns * 1e9)
+    monitor.add_motion(worn.joint_stamps + later, worn.position, worn.velocity, worn.effort)
+    monitor.add_vibration(worn.stamps + later, worn.values)
+    said = [(a.stamp - EPOCH - later, a.verdict.component) for a in monitor.advance()]
+    look = round((LONGEST_PERIOD + 2.0 * LONGEST_STRETCH) * 1e9)
+    assert Component.NONE not in {component for after, component in said if after > look}
+    assert Component.CIRCULAR_SPLINE not in {component for _, component in said}
+    assert {component for after, component in said if after > 2 * look} == {Component.FLEXSPLINE}
 
 
 def test_assesses_every_whole_second_of_the_stamps_once(recording: Recording) -> None:

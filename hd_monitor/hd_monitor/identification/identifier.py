@@ -10,8 +10,8 @@ from .collector import Collector
 from .estimation import Estimation
 from .result import Identification
 
-CRUISE_STRETCH = 2.0
-"""Length [s] of the stretches looked at once the indexes are known well enough."""
+CRUISE_STRETCH, SHORTEST_STRETCH = 2.0, 1.0
+"""Length [s] of the stretches looked at once the indexes are known well enough, and once they are known far better."""
 
 CRUISE_PERIOD, LONGEST_PERIOD = 32.0, 64.0
 """Time [s] from one such stretch to the next where the indexes are known just well enough, and where far better."""
@@ -67,7 +67,8 @@ class Identifier:
         for stretch in self._collector.add(record, self._stretch_length):
             self._estimation.take(stretch)
             if self._is_cruising:
-                self._skip = min(CRUISE_PERIOD * self._estimation.sureness, LONGEST_PERIOD) - CRUISE_STRETCH
+                period = min(CRUISE_PERIOD * self._estimation.sureness, LONGEST_PERIOD)
+                self._skip = period - self._stretch_length
 
     def estimate(self) -> Identification | None:
         """Return the newest estimate; None as long as there was not enough motion."""
@@ -85,6 +86,7 @@ class Identifier:
 
     @property
     def _stretch_length(self) -> float:
-        if self._is_cruising:
-            return CRUISE_STRETCH
+        if self._is_cruising:  # from where the period grows no more on, the stretches get shorter
+            surplus = CRUISE_PERIOD * self._estimation.sureness / LONGEST_PERIOD
+            return min(CRUISE_STRETCH, max(SHORTEST_STRETCH, CRUISE_STRETCH / surplus))
         return min(LONGEST_STRETCH, max(1.0, 0.25 * self._estimation.seconds))

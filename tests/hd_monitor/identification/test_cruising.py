@@ -4,7 +4,13 @@ import numpy as np
 import pytest
 
 from hd_monitor.acquisition.record import Record
-from hd_monitor.identification.identifier import CRUISE_PERIOD, CRUISE_STRETCH, LONGEST_PERIOD, Identifier
+from hd_monitor.identification.identifier import (
+    CRUISE_PERIOD,
+    CRUISE_STRETCH,
+    LONGEST_PERIOD,
+    SHORTEST_STRETCH,
+    Identifier,
+)
 from hd_monitor.settings import JointSettings
 
 RATE = 100.0  # Hz
@@ -51,12 +57,19 @@ def run(estimation: Stub, seconds: int, speed: float = SPEED, *, sparing: bool =
 
 
 @pytest.mark.parametrize(
-    ("sureness", "period"), [(1.0, CRUISE_PERIOD), (1.5, 1.5 * CRUISE_PERIOD), (9.0, LONGEST_PERIOD)]
+    ("sureness", "period", "length"),
+    [
+        (1.0, CRUISE_PERIOD, CRUISE_STRETCH),
+        (1.5, 1.5 * CRUISE_PERIOD, CRUISE_STRETCH),
+        (2.0, LONGEST_PERIOD, CRUISE_STRETCH),
+        (4.0, LONGEST_PERIOD, SHORTEST_STRETCH),
+        (9.0, LONGEST_PERIOD, SHORTEST_STRETCH),
+    ],
 )
-def test_the_better_the_indexes_are_known_the_less_is_looked_at(sureness: float, period: float) -> None:
+def test_the_better_the_indexes_are_known_the_less_is_looked_at(sureness: float, period: float, length: float) -> None:
     estimation = Stub(sureness)
     run(estimation, 1000)
-    assert set(estimation.taken) == {CRUISE_STRETCH}
+    assert set(estimation.taken) == {length}
     assert len(estimation.taken) == pytest.approx(1000.0 / period, abs=1.0)
 
 
