@@ -61,8 +61,9 @@ class Bench:
         self._read = 0
 
     def monitor(self, *parameters: str) -> Any:
-        # Loss counts by the stamps, which a rig at ten times real time lets run as fast.
-        return self._start(MONITOR, ("input.timeout:=30.0", *parameters))
+        # Loss counts by the stamps, which a rig at ten times real time lets run as fast; and until the monitor has found
+        # a publisher that has found it, one topic may come seconds later than another.
+        return self._start(MONITOR, ("input.timeout:=120.0", *parameters))
 
     def rig(self, *parameters: str) -> Any:
         return self._start(RIG, parameters)
