@@ -61,8 +61,8 @@ class Bench:
         self._read = 0
 
     def monitor(self, *parameters: str) -> Any:
-        # Loss counts by the stamps, which a rig at ten times real time lets run as fast; and until the monitor has found
-        # a publisher that has found it, one topic may come seconds later than another.
+        # Loss counts by the stamps, which a rig at ten times real time lets run as fast; and one topic may come seconds
+        # later than another where the monitor has yet to find a publisher that has found it.
         return self._start(MONITOR, ("input.timeout:=120.0", *parameters))
 
     def rig(self, *parameters: str) -> Any:

@@ -27,6 +27,7 @@ from .knowledge import Knowledge
 from .linearisation import Predictor
 from .misfit import LineResidual
 from .noise_floor import NoiseFloor
+from .normal_equations import Evidence
 from .preparation import Preparation
 from .refinement import Score, scores
 from .result import Identification
@@ -88,6 +89,7 @@ class Estimation:
         self._values = u.zero()
         self._active = u.mask(u.stiffness, u.load, u.inertia)
         self._recent: list[Stretch] = []
+        self._known: dict[Stretch, Evidence] = {}
         self._fitted_anew = 0.0
         self._floor: NoiseFloor | None = None
         self._line_residual = LineResidual.empty(u.harmonics)
@@ -149,6 +151,9 @@ class Estimation:
             floor, rest = self._rest(fit)
         self._values, self._floor, self._line_residual = fit.values, floor, rest
         self._learnt = self._learnt.plus(fit.equations, fit.values)
+        known = self._known | {item.stretch: item for item in fit.evidence}
+        at_hand = self._recent if self.seconds <= WINDOW else []
+        self._known = {stretch: known[stretch] for stretch in at_hand if stretch in known}
         self._question_teeth(fit)
         self._conclude(fit)
         self.age(sum(item.stretch.duration for item in fit.evidence))
@@ -174,13 +179,15 @@ class Estimation:
             self._schedule = self._schedule.with_look(self.seconds)
             problem = self._anew()
             small, best = explore_newest(problem, [self._values], rounds=_FEW_ROUNDS)
-            return self._follow(problem, small, [best.values], _FEW_ROUNDS)
+            return self._follow(problem, small, [best], _FEW_ROUNDS)
         if young and self.seconds >= 2.0 * self._fitted_anew:
-            return self._anew().solve(self._values, rounds=_ROUNDS)
+            return self._anew().solve_near(self._values, self._known, rounds=_ROUNDS)
         fit = self._problem(self._recent[-1:], self._prior + self._learnt).solve(self._values, rounds=3)
         change = fit.values - self._values
         if young and float(change @ self._learnt.information @ change) > _MOVED**2:
-            fit = self._anew().solve(fit.values, rounds=_ROUNDS)
+            fit = self._anew().solve_near(
+                fit.values, self._known | {e.stretch: e for e in fit.evidence}, rounds=_ROUNDS
+            )
         return fit
 
     def _anew(self) -> Problem:
@@ -190,11 +197,11 @@ class Estimation:
         return self._problem(self._recent, self._prior)
 
     @staticmethod
-    def _follow(problem: Problem, small: Problem, candidates: Sequence[FloatArray], rounds: int) -> Fit:
+    def _follow(problem: Problem, small: Problem, candidates: Sequence[FloatArray | Fit], rounds: int) -> Fit:
         """Solve on all data from what the newest told."""
         whole = replace(problem, floor=small.floor)
-        fit = min((whole.solve(values, rounds=rounds) for values in candidates), key=lambda f: f.cost)
-        return replace(problem, floor=fit.floor).solve(fit.values, rounds=rounds)
+        fit = min((whole.solve(start, rounds=rounds) for start in candidates), key=lambda f: f.cost)
+        return replace(problem, floor=fit.floor).solve(fit, rounds=rounds)
 
     def _turn_sensor(self, fit: Fit) -> Fit:
         """Try the sensor's sign the other way round: against that of the torque it is a matter of mounting.

@@ -1,7 +1,7 @@
 """Gauss-Newton fit of the unknowns to a number of stretches at once."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -91,7 +91,21 @@ class Problem:
 
     def at(self, values: FloatArray) -> Fit:
         """Evaluate a point."""
-        evidence = tuple(examine(stretch, self.predictor, values, self.floor) for stretch in self.stretches)
+        return self._fit(
+            values, tuple(examine(stretch, self.predictor, values, self.floor) for stretch in self.stretches)
+        )
+
+    def near(self, values: FloatArray, known: Mapping[Stretch, Evidence]) -> Fit:
+        """Evaluate a point to first order from where stretches are known, those that are not as they are."""
+        evidence = []
+        for stretch in self.stretches:
+            if (item := known.get(stretch)) is None:
+                evidence.append(examine(stretch, self.predictor, values, self.floor))
+            else:
+                evidence.append(item.moved(values - item.values).weighted(self.floor))
+        return self._fit(values, tuple(evidence))
+
+    def _fit(self, values: FloatArray, evidence: tuple[Evidence, ...]) -> Fit:
         equations = evidence[0].equations
         for item in evidence[1:]:
             equations = equations + item.equations
@@ -111,9 +125,28 @@ class Problem:
             covariance=covariance,
         )
 
-    def solve(self, start: FloatArray, *, rounds: int) -> Fit:
+    def solve(self, start: FloatArray | Fit, *, rounds: int) -> Fit:
         """Take Gauss-Newton steps from `start`, at most `rounds`."""
-        fit = self.at(start)
+        return self._descend(self._started(start), rounds)
+
+    def solve_near(self, start: FloatArray, known: Mapping[Stretch, Evidence], *, rounds: int) -> Fit:
+        """Do the same, with a first step from what is `known` of the stretches at other points, if it leads down."""
+        rough = self.near(start, known)
+        trial = self.at(self._bounded(start + rough.step * self._room(start, rough.step)))
+        if math.isfinite(trial.cost) and trial.cost < rough.cost:
+            return self._descend(trial, rounds - 1)
+        return self.solve(start, rounds=rounds)
+
+    def _started(self, start: FloatArray | Fit) -> Fit:
+        """Evaluate the start; of one that was simulated already, only the weights are new."""
+        if not isinstance(start, Fit):
+            return self.at(start)
+        here = tuple(item.stretch for item in start.evidence if item.values is item.simulated)
+        if here != tuple(self.stretches):
+            return self.at(start.values)
+        return self._fit(start.values, tuple(item.weighted(self.floor) for item in start.evidence))
+
+    def _descend(self, fit: Fit, rounds: int) -> Fit:
         for _ in range(rounds):
             if fit.step_size < CONVERGED:
                 break
@@ -177,7 +210,7 @@ class Problem:
 
     def _priced(self, start: Fit, rounds: int) -> tuple[float, "Problem", Fit]:
         """Solve, and give minus twice the logarithm of the likelihood, the noise's variance being at its own best."""
-        fit = self.solve(start.values, rounds=rounds)
+        fit = self.solve(start, rounds=rounds)
         freedom = fit.equations.freedom
         return freedom * math.log(self.floor.mean * fit.equations.cost) + self.prior.cost(fit.values), self, fit
 

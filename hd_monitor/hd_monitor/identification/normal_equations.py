@@ -58,8 +58,12 @@ class Evidence:
     Attributes
     ----------
     stretch : Stretch
+    values, simulated : ndarray, shape (unknowns,)
+        The point, and the one at which the stretch was simulated: another where the evidence was moved.
     equations : NormalEquations
     linearisation : Linearisation
+    columns : ndarray, shape (2 * bins, 3 + unknowns)
+        Transforms of free vibrations, residual and derivatives where simulated, not weighted.
     residual : ndarray, shape (2 * bins,)
         Transform of the residual, free vibrations taken off, not weighted.
     derivatives : ndarray, shape (2 * bins, unknowns)
@@ -71,8 +75,11 @@ class Evidence:
     """
 
     stretch: Stretch
+    values: FloatArray
+    simulated: FloatArray
     equations: NormalEquations
     linearisation: Linearisation
+    columns: FloatArray
     residual: FloatArray
     derivatives: FloatArray
     std: FloatArray
@@ -95,25 +102,45 @@ class Evidence:
         """Return what the stretch says at a point a small `step` of the unknowns on, to first order of the step."""
         return replace(
             self,
+            values=self.values + step,
             equations=self.equations.moved(step),
             linearisation=self.linearisation.moved(self.stretch, step),
             residual=self.residual - self.derivatives @ step,
         )
+
+    def weighted(self, floor: NoiseFloor) -> "Evidence":
+        """Return what the stretch says under another noise floor; nothing is simulated for that."""
+        return _weighted(self.stretch, self.linearisation, self.columns, floor, self.values, self.simulated)
 
 
 def examine(stretch: Stretch, predictor: Predictor, values: FloatArray, floor: NoiseFloor) -> Evidence:
     """Linearise a stretch at `values` and weight it by the noise floor."""
     line = predictor.linearise(stretch, values)
     columns = stretch.transform(np.concatenate([line.free, line.residual[:, None], line.jacobian], axis=1))
+    return _weighted(stretch, line, columns, floor, values, values)
+
+
+def _weighted(
+    stretch: Stretch,
+    line: Linearisation,
+    columns: FloatArray,
+    floor: NoiseFloor,
+    values: FloatArray,
+    simulated: FloatArray,
+) -> Evidence:
     frequencies = stretch.frequencies
     std = np.tile(floor.sample_std(frequencies, stretch.period), 2)
-    columns /= std[:, None]
-    free, _ = np.linalg.qr(columns[:, :2])
-    white = columns[:, 2:]
+    weighted = columns / std[:, None]
+    if values is not simulated:
+        weighted[:, 2] -= weighted[:, 3:] @ (values - simulated)
+    free, _ = np.linalg.qr(weighted[:, :2])
+    white = weighted[:, 2:]
     white -= free @ (free.T @ white)
     gram = white.T @ white
     return Evidence(
         stretch=stretch,
+        values=values,
+        simulated=simulated,
         equations=NormalEquations(
             information=gram[1:, 1:],
             gradient=gram[1:, 0],
@@ -121,6 +148,7 @@ def examine(stretch: Stretch, predictor: Predictor, values: FloatArray, floor: N
             freedom=2.0 * frequencies.size * stretch.fill - 2.0,
         ),
         linearisation=line,
+        columns=columns,
         residual=white[:, 0] * std,
         derivatives=white[:, 1:] * std[:, None],
         std=std,

@@ -1,5 +1,7 @@
 """The fit: it reaches the truth, and the last step it takes without a simulation leads where a simulation says."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -79,22 +81,68 @@ def test_the_last_step_leads_where_a_simulation_says(fitted):
         assert np.linalg.norm(moved.residual - simulated.residual) < 0.01 * scale
 
 
-def test_a_small_step_costs_a_single_simulation(fitted, monkeypatch):
+@pytest.fixture
+def simulated(monkeypatch):
+    """Every simulation there is from now on."""
+    arguments_of_all = []
+    original = Predictor.linearise
+
+    def linearise(self, *arguments):
+        arguments_of_all.append(arguments)
+        return original(self, *arguments)
+
+    monkeypatch.setattr(Predictor, "linearise", linearise)
+    return arguments_of_all
+
+
+def test_a_small_step_costs_a_single_simulation(fitted, simulated):
     """Knowledge that is good already: the newest stretch is evaluated once."""
     _, fit = fitted
     knowledge = Knowledge.none(UNKNOWNS.size).plus(fit.equations, fit.values)
     task = problem(stretch(3, seconds=0.5), prior=knowledge)
-    simulated = []
-    original = Predictor.linearise
-
-    def linearise(self, *arguments):
-        simulated.append(arguments)
-        return original(self, *arguments)
-
-    monkeypatch.setattr(Predictor, "linearise", linearise)
+    simulated.clear()
     better = task.solve(fit.values, rounds=3)
     assert len(simulated) == 1
     assert better.cost < task.at(fit.values).cost
+
+
+def test_a_start_that_was_simulated_is_not_simulated_again(fitted, simulated):
+    task, fit = fitted
+    there = task.at(fit.values)
+    louder = replace(task, floor=NoiseFloor.white(8.0 * NOISE**2 / RATE))
+    simulated.clear()
+    assert louder.solve(there, rounds=0).cost < there.cost
+    assert not simulated
+    step = 1e-4 * ACTIVE
+    moved = replace(there, values=there.values + step, evidence=tuple(item.moved(step) for item in there.evidence))
+    louder.solve(moved, rounds=0)  # it was not simulated there
+    assert len(simulated) == len(task.stretches)
+
+
+def test_what_is_known_nearby_saves_the_first_simulations(fitted, simulated):
+    task, fit = fitted
+    start = fit.values + 0.1 * (TRUTH != 0.0) * np.abs(TRUTH)
+    known = {item.stretch: item for item in task.at(fit.values).evidence}
+    simulated.clear()
+    near = task.solve_near(start, known, rounds=10)
+    saved = len(simulated)
+    simulated.clear()
+    far = task.solve(start, rounds=10)
+    assert saved == len(simulated) - len(task.stretches)
+    apart = near.values - far.values
+    assert apart @ far.equations.information @ apart < NEGLIGIBLE**2
+
+
+def test_what_is_known_elsewhere_does_not_mislead(fitted):
+    task, fit = fitted
+    elsewhere = UNKNOWNS.zero()
+    elsewhere[UNKNOWNS.stiffness] = [0.2, -0.2, 0.1, -0.1]
+    elsewhere[UNKNOWNS.load] = [-1.0, 1.0, 1.0, -1.0]
+    known = {item.stretch: item for item in task.at(elsewhere).evidence}
+    near = task.solve_near(UNKNOWNS.zero(), known, rounds=12)
+    information = fit.equations.information[np.ix_(ACTIVE, ACTIVE)]
+    error = (near.values - fit.values)[ACTIVE]
+    assert error @ information @ error < NEGLIGIBLE**2
 
 
 def test_a_large_step_is_not_believed_without_a_simulation():

@@ -97,3 +97,21 @@ def test_twice_the_noise_is_a_quarter_of_the_information(clean):
     quiet = examine(item, PREDICTOR, TRUTH, FLOOR).equations
     assert 4.0 * loud.information == pytest.approx(quiet.information)
     assert 4.0 * loud.cost == pytest.approx(quiet.cost)
+
+
+def test_other_weights_need_no_simulation(clean):
+    item, other = stretch(clean + noise(1)), NoiseFloor.white(3.0 * NOISE**2 / RATE)
+    anew, weighted = examine(item, PREDICTOR, TRUTH, other), examine(item, PREDICTOR, TRUTH, FLOOR).weighted(other)
+    np.testing.assert_array_equal(weighted.equations.information, anew.equations.information)
+    np.testing.assert_array_equal(weighted.residual, anew.residual)
+
+
+def test_a_moved_point_keeps_its_place_under_other_weights(clean):
+    step = UNKNOWNS.zero()
+    step[UNKNOWNS.stiffness] = 1e-3
+    moved = at_truth(clean, 1).moved(step)
+    weighted = moved.weighted(FLOOR)
+    assert weighted.equations.cost == pytest.approx(moved.equations.cost, rel=1e-9)
+    np.testing.assert_allclose(weighted.equations.gradient, moved.equations.gradient, rtol=1e-6, atol=1e-6)
+    np.testing.assert_allclose(weighted.residual, moved.residual, atol=1e-9)
+    np.testing.assert_array_equal(weighted.values, TRUTH + step)
