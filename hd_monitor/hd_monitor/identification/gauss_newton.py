@@ -26,6 +26,7 @@ CONVERGED = 0.05
 NEGLIGIBLE = 0.1
 """Standard deviations that a step may miss its end by for being taken along a straight line."""
 
+_NEARBY = 0.5  # of the steps over which derivatives change by their own size
 _HALVINGS = 5
 _TRIAL_ROUNDS = 3  # after which the best of several starts go on
 _FINALISTS = 2
@@ -96,10 +97,12 @@ class Problem:
         )
 
     def near(self, values: FloatArray, known: Mapping[Stretch, Evidence]) -> Fit:
-        """Evaluate a point to first order from where stretches are known, those that are not as they are."""
+        """Evaluate a point to first order from where stretches were simulated nearby; simulate the others."""
+        reach = _NEARBY * _linear_range(self.predictor.unknowns)
         evidence = []
         for stretch in self.stretches:
-            if (item := known.get(stretch)) is None:
+            item = known.get(stretch)
+            if item is None or bool((np.abs(values - item.simulated) > reach).any()):
                 evidence.append(examine(stretch, self.predictor, values, self.floor))
             else:
                 evidence.append(item.moved(values - item.values).weighted(self.floor))
