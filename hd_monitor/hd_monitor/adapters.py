@@ -8,15 +8,12 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import NamedTuple, Protocol
 
 import numpy as np
-import numpy.typing as npt
 
 from . import cdr, contract
+from .arrays import FloatArray, IntArray
 from .cdr_layout import Fault
 from .errors import LayoutError, ParameterError
 from .settings import JointSettings
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
 
 UNNAMED_JOINT = "joint"
 """Name of a joint that the parameters do not name; it takes the only joint there is in joint_states."""

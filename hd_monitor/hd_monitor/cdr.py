@@ -12,12 +12,10 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from .arrays import FloatArray, IntArray
 from .cdr_layout import Fault, Layout, Template, groups_of
 from .contract import NANOSECONDS, Dimension
 from .errors import LayoutError
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
 
 
 class Samples(NamedTuple):

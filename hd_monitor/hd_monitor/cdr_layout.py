@@ -8,9 +8,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from .arrays import BoolArray, IntArray
 from .errors import LayoutError
-
-IntArray = npt.NDArray[np.int64]
 
 ENCAPSULATION = 4
 """Bytes before the payload: representation (2), options (2). Alignment counts from behind them."""
@@ -31,7 +30,7 @@ class Layout[T]:
     """Where the values of a message stand (`record`), and which of its bytes decide that (`decisive`)."""
 
     record: np.dtype[np.void]
-    decisive: npt.NDArray[np.bool_]
+    decisive: BoolArray
     content: T
 
 

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from .arrays import FloatArray
 from .errors import LayoutError
 
 TORSIONAL_ACCELERATION = "torsional_acceleration"
@@ -48,11 +49,11 @@ class Block(NamedTuple):
     """Sample period [s]."""
     sequence: int
     """Number of the block; a jump exposes loss."""
-    samples: npt.NDArray[np.float64]
+    samples: FloatArray
     """θ'' [rad/s²], shape (N,)."""
 
 
-def pack_block(block: Block) -> tuple[Dimension, npt.NDArray[np.float64]]:
+def pack_block(block: Block) -> tuple[Dimension, FloatArray]:
     """Lay out a block as the topic ``torsional_acceleration/block`` wants it: (dimension, data)."""
     count = len(block.samples)
     data = np.empty(BLOCK_OFFSET + count)
@@ -93,7 +94,7 @@ def unpack_block(dimensions: Sequence[tuple[str, int, int]], data_offset: int, d
 
 
 def unpack_blocks(
-    dimensions: Sequence[tuple[str, int, int]], data_offset: int, data: npt.NDArray[np.float64]
+    dimensions: Sequence[tuple[str, int, int]], data_offset: int, data: FloatArray
 ) -> list[Block | LayoutError]:
     """Read many arrays of the same layout, one a row of `data`; in place of a bad one stands what is wrong with it.
 

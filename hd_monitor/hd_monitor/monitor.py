@@ -11,6 +11,7 @@ from .acquisition.recorder import Harvest, Recorder
 from .acquisition.stream import StampedBuffer
 from .analysis.rms_curve import RmsAccumulator
 from .analysis.steady import SteadyStretch
+from .arrays import FloatArray
 from .assessment import Assessment
 from .contract import NANOSECONDS, Block
 from .diagnosis.absence import nothing_received, partly_lost, unusable
@@ -21,8 +22,6 @@ from .identification.result import Identification
 from .identification.sensorless import SensorlessIdentifier
 from .settings import JointSettings
 from .timeline import Timeline, Window
-
-FloatArray = npt.NDArray[np.float64]
 
 VIBRATION = "vibration signal"
 MOTION = "joint states"

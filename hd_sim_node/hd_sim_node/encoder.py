@@ -6,10 +6,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .programme import FloatArray
+from hd_monitor.arrays import FloatArray, IntArray
+
 from .randomness import generator
 from .rig import Rig, RigChunk
-from .sensor import IntArray, nanoseconds
+from .sensor import nanoseconds
 
 EFFORTS = ("transmitted", "mean", "reaction", "none")
 SIDES = ("motor", "output")

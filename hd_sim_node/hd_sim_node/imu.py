@@ -4,7 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .programme import FloatArray
+from hd_monitor.arrays import FloatArray
+
 from .rig import RigChunk, Surroundings
 
 STANDARD_GRAVITY = 9.80665

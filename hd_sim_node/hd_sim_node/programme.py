@@ -6,9 +6,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from hd_monitor.arrays import FloatArray
 from hd_monitor.errors import ParameterError
-
-FloatArray = npt.NDArray[np.float64]
 
 RPM = math.tau / 60.0
 """One revolution per minute in rad/s."""

@@ -7,12 +7,13 @@ import numpy as np
 import numpy.typing as npt
 from scipy.interpolate import CubicHermiteSpline
 
+from hd_monitor.arrays import FloatArray, IntArray
 from hd_monitor.errors import ParameterError
 from hd_monitor.model import Oscillator, ParametricModel, Response
 from hd_monitor.model.oscillator import GAUSS_OFFSETS
 from hd_monitor.reducer import WAVE_GENERATOR_LOBES
 
-from .programme import FloatArray, SpeedProgramme
+from .programme import SpeedProgramme
 
 PHASE_STEP = 0.25
 """Longest integration step, in radians of the fastest of natural vibration and stiffness harmonics: good to 1e-6."""
@@ -208,7 +209,7 @@ class Rig:
             _fine=fine,
         )
 
-    def _substeps(self, index: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
+    def _substeps(self, index: IntArray) -> IntArray:
         """Steps in each sampling interval: enough for the fastest thing that happens in it."""
         model = self.model
         orders = model.reducer.output_orders

@@ -3,15 +3,12 @@
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from hd_monitor.arrays import FloatArray, IntArray
 from hd_monitor.contract import NANOSECONDS
 
-from .programme import FloatArray
 from .randomness import generator
 from .rig import RigChunk
-
-IntArray = npt.NDArray[np.int64]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

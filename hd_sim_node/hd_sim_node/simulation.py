@@ -6,13 +6,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from hd_monitor import contract
+from hd_monitor.arrays import FloatArray, IntArray
 from hd_monitor.contract import NANOSECONDS, Block
 from hd_monitor.errors import ParameterError
 
 from .encoder import Joint, JointBatch
-from .programme import FloatArray
 from .rig import Rig, RigChunk
-from .sensor import Accelerometer, IntArray, nanoseconds
+from .sensor import Accelerometer, nanoseconds
 from .settings import RigSettings
 from .stability import describe, unstable_speeds
 from .transport import Dispatch, Transport, TransportSettings

@@ -5,8 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from hd_monitor.arrays import IntArray
+
 from .randomness import generator
-from .sensor import IntArray
 
 _LATEST = 3.0  # message intervals: a late message lets up to three others pass
 

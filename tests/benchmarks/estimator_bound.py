@@ -12,9 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from hd_monitor.arrays import BoolArray, FloatArray
 from hd_monitor.model import ParametricModel
-
-FloatArray = npt.NDArray[np.float64]
 
 HARMONICS = 3
 STIFFNESS = slice(0, 4 * HARMONICS)
@@ -69,7 +68,7 @@ def bound(
     samples: int,
     rate: float,
     noise: float,
-    unknown: npt.NDArray[np.bool_],
+    unknown: BoolArray,
     informed: bool = False,
 ) -> Bound:
     """Cramér-Rao bound for a motion at constant acceleration.

@@ -22,7 +22,6 @@ from functools import lru_cache, partial
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 from scipy.stats import binom
 
 from hd_monitor.acquisition.record import Record
@@ -38,7 +37,7 @@ from tests.benchmarks import estimator_bound
 from tests.benchmarks.estimator_bound import Bound, bound
 from tests.benchmarks.estimator_cases import Case, random_case, simulate
 
-FloatArray = npt.NDArray[np.float64]
+from hd_monitor.arrays import FloatArray
 
 CLEAN = {"colour": "white", "spikes": 0.0, "lost": 0.0}
 SPEED = 1000.0  # rpm: lines at 33, 67 and 100 Hz, off the natural frequency of 55 Hz; two output turns in 10 s

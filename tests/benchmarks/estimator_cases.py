@@ -9,12 +9,12 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy.interpolate import CubicHermiteSpline
 from scipy.signal import lfilter
 
 from hd_monitor.acquisition.motion import MotionTrack
 from hd_monitor.acquisition.record import Record
+from hd_monitor.arrays import FloatArray
 from hd_monitor.diagnosis.verdict import Component
 from hd_monitor.model import (
     Dynamics,
@@ -27,8 +27,6 @@ from hd_monitor.model import (
 )
 from hd_monitor.reducer import LinePair, Mount, Reducer
 from hd_monitor.settings import JointSettings
-
-FloatArray = npt.NDArray[np.float64]
 
 WARN = 0.05
 BOTH_RATIO = 0.87

@@ -7,14 +7,12 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy.signal import lfilter
 
 from hd_monitor.acquisition.record import JointSamples
+from hd_monitor.arrays import FloatArray
 from hd_monitor.reducer import LinePair, Mount, Reducer
 from hd_monitor.settings import JointSettings
-
-FloatArray = npt.NDArray[np.float64]
 
 MOTIONS = ("harmonics", "strokes", "rotation")
 """A Fourier series as in robot identification; there and back between two ends; turning on with changing speed."""

@@ -3,10 +3,10 @@
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from hd_monitor.adapters import Inputs
+from hd_monitor.arrays import FloatArray, IntArray
 from hd_monitor.contract import Block
 from hd_monitor.errors import ParameterError
 from hd_monitor.settings import JointSettings
@@ -59,7 +59,7 @@ class Recorder:
         self.motion: list[tuple[int, float, float, float]] = []
         self.rejected: list[str] = []
 
-    def add_vibration(self, stamps: npt.NDArray[np.int64], values: npt.NDArray[np.float64]) -> None:
+    def add_vibration(self, stamps: IntArray, values: FloatArray) -> None:
         self.vibration += zip(stamps.tolist(), values.tolist(), strict=True)
 
     def add_block(self, block: Block) -> None:

@@ -6,6 +6,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from ..arrays import FloatArray, IntArray
+
 _EVEN = 0.02  # of a period: single differences of stamps as even as this count the missing samples without fail
 _DISORDERED = 0.2  # of a period: sorted stamps more uneven than this were not sampled in that order
 _SHARP = 0.17  # of a period: stamps nearer to the grid than this tell their own place; mere rounding leaves 0.29
@@ -33,14 +35,14 @@ class Clock(NamedTuple):
     """
 
     order: npt.NDArray[np.intp]
-    number: npt.NDArray[np.int64]
+    number: IntArray
     start: float
     period: float
     jitter: float
     duplicates: int
 
 
-def recover_clock(times: npt.NDArray[np.float64], period: float | None = None) -> Clock | None:
+def recover_clock(times: FloatArray, period: float | None = None) -> Clock | None:
     """Fit an even grid to stamps in the order of arrival.
 
     Parameters
@@ -101,7 +103,7 @@ def recover_clock(times: npt.NDArray[np.float64], period: float | None = None) -
     return Clock(order, number, start, fitted, jitter, duplicates)
 
 
-def _settle(number: npt.NDArray[np.int64], t: npt.NDArray[np.float64]) -> npt.NDArray[np.int64]:
+def _settle(number: IntArray, t: FloatArray) -> IntArray:
     """Renumber stamps by the line through them until nothing changes."""
     half = t.size // 2
     for _ in range(_REFINEMENTS):
@@ -117,18 +119,18 @@ def _settle(number: npt.NDArray[np.int64], t: npt.NDArray[np.float64]) -> npt.ND
     return number
 
 
-def _without_duplicates(times: npt.NDArray[np.float64]) -> tuple[npt.NDArray[np.intp], int]:
+def _without_duplicates(times: FloatArray) -> tuple[npt.NDArray[np.intp], int]:
     _, first = np.unique(times, return_index=True)
     return np.sort(first), int(times.size - first.size)
 
 
-def _unevenness(steps: npt.NDArray[np.float64]) -> float:
+def _unevenness(steps: FloatArray) -> float:
     """Typical deviation of the steps from their median, as a part of it; robust against holes."""
     middle = float(np.median(steps))
     return float(np.median(np.abs(steps - middle))) / middle if middle > 0.0 else np.inf
 
 
-def _count_through_jitter(t: npt.NDArray[np.float64], period: float, *, exact: bool) -> npt.NDArray[np.int64]:
+def _count_through_jitter(t: FloatArray, period: float, *, exact: bool) -> IntArray:
     """Number samples whose stamps jitter by a good part of a period: missing ones show in the smoothed excess only.
 
     The excess of the stamps over an even count is a whole number everywhere, were it not for the jitter. Averaged, it
@@ -148,13 +150,13 @@ def _count_through_jitter(t: npt.NDArray[np.float64], period: float, *, exact: b
     return np.asarray(count + missing - missing[0], dtype=np.int64)
 
 
-def _smooth(values: npt.NDArray[np.float64], width: int) -> npt.NDArray[np.float64]:
+def _smooth(values: FloatArray, width: int) -> FloatArray:
     """Moving average; towards the ends over what there is."""
     ones = np.convolve(np.ones(values.size), np.ones(width), mode="same")
     return np.asarray(np.convolve(values, np.ones(width), mode="same") / ones)
 
 
-def _line(number: npt.NDArray[np.int64], t: npt.NDArray[np.float64]) -> tuple[float, float]:
+def _line(number: IntArray, t: FloatArray) -> tuple[float, float]:
     """Least-squares line through t(number): (start, slope)."""
     mean_n, mean_t = float(number.sum()) / number.size, float(t.sum()) / t.size
     centred = number - mean_n

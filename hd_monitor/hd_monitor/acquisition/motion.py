@@ -6,11 +6,9 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from ..arrays import BoolArray, FloatArray
 from ..interpolation import cubics
 from .clock import recover_clock
-
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
 
 _LARGEST_HOLE = 0.25  # s; a joint can change its speed within that in ways that no interpolation knows
 _HOLE_PERIODS = 5.0

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from ..arrays import FloatArray, IntArray
 from ..settings import JointSettings
 from .clock import recover_clock
 from .motion import MotionTrack, even_stamps
@@ -15,8 +15,6 @@ from .quality import Quality
 from .record import JointSamples, Record
 from .screening import screen
 from .stream import Samples
-
-FloatArray = npt.NDArray[np.float64]
 
 _NS = 1e-9
 _REPLACED = ("rate", "last_fault")  # of the quality, what is no counter
@@ -246,6 +244,6 @@ class Recorder:
         self.count(last_fault=f"{names[worst]} vibration samples of the last period {worst} and were left out")
 
 
-def _seconds(stamps: npt.NDArray[np.int64], epoch: int) -> FloatArray:
+def _seconds(stamps: IntArray, epoch: int) -> FloatArray:
     """Stamps [ns] as times [s] relative to the epoch [ns]."""
     return np.asarray((stamps - epoch) * _NS, dtype=np.float64)

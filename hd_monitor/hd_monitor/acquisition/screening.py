@@ -6,7 +6,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
+from ..arrays import BoolArray, FloatArray
+
 Places = npt.NDArray[np.intp]
 
 _SPIKE = 8.0  # robust standard deviations of the curvature; a sine never exceeds 2
@@ -60,7 +61,7 @@ def screen(values: FloatArray, *, full_scale: float = 0.0, turning: bool = True)
     return Screened(clean, not_finite, clipped.size, stuck.size, spikes.size)
 
 
-def _flat_runs(values: FloatArray, equal: npt.NDArray[np.bool_], *, tops: bool) -> tuple[Places, Places]:
+def _flat_runs(values: FloatArray, equal: BoolArray, *, tops: bool) -> tuple[Places, Places]:
     """Places of flat tops, if asked for, and of values that are stuck."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], equal, [False]]).astype(np.int8)))
     flat, stuck = np.zeros(values.size, dtype=np.bool_), np.zeros(values.size, dtype=np.bool_)

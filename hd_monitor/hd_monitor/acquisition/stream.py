@@ -10,10 +10,8 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
-StampArray = npt.NDArray[np.int64]
+from ..arrays import BoolArray, FloatArray, IntArray
 
 LATENESS = 50_000_000
 """A sample may come this long [ns] after a later one and is still sorted in."""
@@ -31,14 +29,14 @@ TRUSTED = 1_000_000_000
 class Samples(NamedTuple):
     """Stamps [ns], shape (N,), and values, shape (N, columns), in the order of arrival."""
 
-    stamps: StampArray
+    stamps: IntArray
     values: FloatArray
 
 
 class _Chunk(NamedTuple):
     """Samples that were added together; `ordered` is true if their stamps are known never to fall."""
 
-    stamps: StampArray
+    stamps: IntArray
     values: FloatArray
     ordered: bool
 
@@ -47,8 +45,8 @@ class _Chunk(NamedTuple):
         stamps, values, ordered = self
         if ordered:
             count = int(stamps.searchsorted(until))
-            early: slice | npt.NDArray[np.bool_] = slice(count)
-            late: slice | npt.NDArray[np.bool_] = slice(count, None)
+            early: slice | BoolArray = slice(count)
+            late: slice | BoolArray = slice(count, None)
         else:
             early = stamps < until
             late, count = ~early, int(np.count_nonzero(early))
@@ -90,7 +88,7 @@ class StampedBuffer:
         self.disordered = 0
         self.jumps = 0
 
-    def add(self, stamps: StampArray, values: FloatArray) -> None:
+    def add(self, stamps: IntArray, values: FloatArray) -> None:
         """Append samples: stamps [ns] of shape (N,), values of shape (N, columns)."""
         if not stamps.size:
             return

@@ -6,10 +6,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy.linalg import solve_triangular
 
+from ..arrays import ComplexArray, FloatArray
 from ..errors import ParameterError
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 HUBER = 2.5
 """Residuals beyond this many robust standard deviations are clipped; costs 1 % of efficiency on Gaussian noise."""

@@ -6,11 +6,10 @@ import numpy as np
 import numpy.typing as npt
 from scipy.signal import ZoomFFT, get_window
 
+from ..arrays import FloatArray
 from ..contract import MAX_ZOOM_BINS
 from ..errors import ParameterError
 from ..reducer import LinePair
-
-FloatArray = npt.NDArray[np.float64]
 
 WIDTHS = {"boxcar": 1.0, "hann": 2.0}
 """Separation of two lines that a window shows as two, in cycles per record (half of its main lobe)."""

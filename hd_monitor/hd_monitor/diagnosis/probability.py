@@ -5,9 +5,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from scipy.special import ndtri
 
+from ..arrays import FloatArray
 from ..identification.result import Identification
 from ..reducer import LinePair
 from .verdict import Component
@@ -69,7 +69,7 @@ def _share(index: LinePair, index_std: LinePair, correlation: float, limit: floa
 
 
 @functools.cache
-def _standard_normal() -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+def _standard_normal() -> tuple[FloatArray, FloatArray]:
     """Two independent standard normal coordinates of an additive-recurrence (R2) point set."""
     plastic = 1.324717957244746
     n = np.arange(_DRAWS) + 0.5

@@ -4,8 +4,8 @@ import math
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-import numpy.typing as npt
 
+from ..arrays import BoolArray, FloatArray
 from ..model.parameters import Dynamics, ParametricModel, StiffnessSeries, Torque
 from ..settings import JointSettings
 from .coverage import Coverage
@@ -21,9 +21,6 @@ from .result import Identification
 from .scrutiny import Scrutiny, Suspect
 from .stretch import Stretch
 from .unknowns import Unknowns
-
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
 
 WELL_KNOWN = 0.02
 """Standard deviation of the indexes over the larger of index and warn limit that satisfies."""

@@ -4,13 +4,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy import signal
 from scipy.interpolate import CubicSpline
 from scipy.ndimage import median_filter
 
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
+from ..arrays import BoolArray, FloatArray
 
 OUTLIER = 8.0
 """Robust standard deviations by which a sample must stick out of its neighbours to be left out."""

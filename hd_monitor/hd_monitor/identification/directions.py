@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
+from ..arrays import FloatArray
 
 _DEPENDENT = 1e-10  # of the largest square below which a direction is nothing but rounding
 

@@ -7,12 +7,11 @@ more than a defect does. What a joint transmits follows its angle and its motion
 import math
 
 import numpy as np
-import numpy.typing as npt
 from scipy import fft
 from scipy.ndimage import gaussian_filter1d
 from scipy.signal import get_window
 
-FloatArray = npt.NDArray[np.float64]
+from ..arrays import FloatArray
 
 SLOW = 0.08
 """Standard deviation [s] of the smoothing of what angle and motion do not explain: 2 Hz."""

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
 from ..acquisition.record import Record
+from ..arrays import FloatArray
 from ..errors import HdMonitorError, ParameterError
 from ..settings import JointSettings
 from .conclusion import Conclusions
@@ -36,8 +36,6 @@ from .stretch import Stretch
 from .tooth_trial import ToothTrial
 from .tooth_watch import ToothWatch
 from .unknowns import Unknowns
-
-FloatArray = npt.NDArray[np.float64]
 
 LOAD_ORDERS = (1, 2)
 """Cycles per output revolution of unknown load fluctuations: gravity, and the one that mimics the other spline."""

@@ -6,14 +6,12 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
+from ..arrays import FloatArray
 from .gauss_newton import Fit, Problem
 from .noise_floor import NoiseFloor
 from .stretch import Stretch
 from .unknowns import Unknowns
-
-FloatArray = npt.NDArray[np.float64]
 
 START_LOADS = tuple(1.5 * cmath.exp(0.5j * math.pi * quarter) for quarter in range(4))
 """Loads twice per output revolution, in units of the reference torque."""

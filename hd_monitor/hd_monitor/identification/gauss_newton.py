@@ -5,17 +5,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
+from ..arrays import BoolArray, FloatArray
 from .knowledge import Knowledge
 from .linearisation import Predictor
 from .noise_floor import NoiseFloor
 from .normal_equations import Evidence, NormalEquations, examine
 from .stretch import FREQUENCY_MARGIN, Stretch
 from .unknowns import Unknowns
-
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
 
 LARGEST_FLUCTUATION = 0.8
 """Sum of all abs(β) beyond which the stiffness would come near zero; steps end there."""

@@ -4,12 +4,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from ..arrays import FloatArray
 from ..reducer import LinePair
 from .unknowns import Unknowns
-
-FloatArray = npt.NDArray[np.float64]
 
 _EXPLAINED = 2.7
 """Standard deviations that noise alone seldom (in 2.5 %) lifts the square of an index to: 2.4 to 2.8 by its freedom."""

@@ -4,11 +4,9 @@ from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
-import numpy.typing as npt
 
+from ..arrays import BoolArray, FloatArray
 from .normal_equations import NormalEquations
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -68,7 +66,7 @@ class Knowledge:
         """Return the direction in which the price of `values` falls."""
         return np.asarray(self.vector - self.information @ values)
 
-    def covariance(self, active: npt.NDArray[np.bool_]) -> FloatArray:
+    def covariance(self, active: BoolArray) -> FloatArray:
         """Covariance of the best values of the unknowns marked active; 0 for the others.
 
         Pieces that have faded weigh less than their worth, so this is not just the inverse of the information.

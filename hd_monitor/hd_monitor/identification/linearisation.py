@@ -4,16 +4,14 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
+from ..arrays import FloatArray
 from ..interpolation import hermite
 from ..model.oscillator import GAUSS_OFFSETS, Oscillator
 from ..model.parameters import Dynamics
 from .path import Path
 from .stretch import Stretch
 from .unknowns import Unknowns
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)

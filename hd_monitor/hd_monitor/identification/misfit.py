@@ -4,14 +4,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from ..arrays import ComplexArray, FloatArray
 from ..reducer import Reducer
 from .noise_floor import NoiseFloor
 from .normal_equations import Evidence, NormalEquations
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 SIDE = 3
 """Orders looked at on either side of a pair's middle: the pair, the lines between and a load's side lines."""

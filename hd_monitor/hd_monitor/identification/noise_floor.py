@@ -4,11 +4,9 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
+from ..arrays import FloatArray
 from .stretch import Stretch
-
-FloatArray = npt.NDArray[np.float64]
 
 EDGES = np.concatenate([[0.0], 2.0 ** (np.arange(61) / 4.0)])
 """Limits of the bands [Hz]: quarter octaves from 1 Hz to 32 kHz, and one band below; read-only."""

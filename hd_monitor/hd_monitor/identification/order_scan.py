@@ -5,14 +5,12 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
+from ..arrays import FloatArray, IntArray
 from .pair_evidence import LineSolution, solve_lines
 from .stroke_sums import Gram, PairOrders, project, trend_columns
 from .strokes import HIGHEST_SHARE, LOWEST_FREQUENCY, Stroke
 from .whitening import learn_whitening, settled, whiten
-
-FloatArray = npt.NDArray[np.float64]
 
 CLIP = 4.0
 """Robust standard deviations at which the whitened signal is clipped before any line is known."""
@@ -37,7 +35,7 @@ class OrderScan:
         Successive whole orders [cycles per output revolution].
     """
 
-    def __init__(self, strokes: Sequence[Stroke], orders: npt.NDArray[np.int64]) -> None:
+    def __init__(self, strokes: Sequence[Stroke], orders: IntArray) -> None:
         self._orders = orders
         trends = [trend_columns(stroke, TREND_ORDER) for stroke in strokes]
         flat = [project(trend, stroke.values[:, None])[:, 0] for trend, stroke in zip(trends, strokes, strict=True)]

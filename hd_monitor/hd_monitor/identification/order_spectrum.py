@@ -5,16 +5,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 from scipy import fft
 
+from ..arrays import FloatArray
 from ..model.parameters import Dynamics
 from .directions import orthonormal
 from .drive import own_acceleration
 from .stretch import Stretch
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 TURNS = 2
 """Output revolutions after which the sums start over: half orders, where no line can be, tell lines from tones."""

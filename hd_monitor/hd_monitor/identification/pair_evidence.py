@@ -5,14 +5,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy.stats import f as f_distribution
 from scipy.stats import t as t_distribution
 
+from ..arrays import ComplexArray, FloatArray
 from ..reducer import LinePair
 from .stroke_sums import Gram, PairOrders
-
-FloatArray = npt.NDArray[np.float64]
 
 CHANCE = 1e-3
 """Probability of noise making a line as large, below which the line counts as found."""
@@ -47,7 +45,7 @@ class PairEstimate:
         Order beside the pair at which there is a significant line larger than both; None if there is none.
     """
 
-    phasors: npt.NDArray[np.complex128]
+    phasors: ComplexArray
     covariance: FloatArray
     freedom: float
     floor: float
@@ -103,7 +101,7 @@ class LineSolution:
     with each other and with the signal, once the fit is taken off.
     """
 
-    phasors: npt.NDArray[np.complex128]
+    phasors: ComplexArray
     covariance: FloatArray
     floor: float
     freedom: float

@@ -4,14 +4,11 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from ..arrays import BoolArray, ComplexArray, FloatArray
 from ..interpolation import cubics
 from ..model.oscillator import GAUSS_OFFSETS
 from ..reducer import WAVE_GENERATOR_LOBES, Reducer
-
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
 
 
 class Motion(NamedTuple):
@@ -128,7 +125,7 @@ def _at_points(parts: FloatArray, samples: FloatArray, *coefficients: FloatArray
     return np.concatenate([points[0], samples[-1:], points[1:].ravel()])
 
 
-def powers(unit: npt.NDArray[np.complex128], highest: int) -> list[npt.NDArray[np.complex128]]:
+def powers(unit: ComplexArray, highest: int) -> list[ComplexArray]:
     """Return the powers 0, 1, … `highest`: products are many times as fast as an exponential for each."""
     found = [np.ones_like(unit)]
     for _ in range(highest):

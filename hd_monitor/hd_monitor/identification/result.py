@@ -4,9 +4,7 @@ import functools
 import math
 from dataclasses import dataclass, field
 
-import numpy as np
-import numpy.typing as npt
-
+from ..arrays import ComplexArray, FloatArray
 from ..model.parameters import ParametricModel
 from ..reducer import LinePair
 from .margin import instability_speed
@@ -67,8 +65,8 @@ class Identification:
         Reasons why no part may be named on this evidence, with what is missing.
     """
 
-    circular_spline: npt.NDArray[np.complex128]
-    flexspline: npt.NDArray[np.complex128]
+    circular_spline: ComplexArray
+    flexspline: ComplexArray
     index: LinePair
     index_std: LinePair
     index_correlation: float = 0.0
@@ -87,7 +85,7 @@ class Identification:
     model: ParametricModel | None = None
     doubts: tuple[str, ...] = field(default=())
     blockers: tuple[str, ...] = field(default=())
-    beta_covariance: npt.NDArray[np.float64] | None = None
+    beta_covariance: FloatArray | None = None
 
     @property
     def instability_speed(self) -> float:

@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from ..arrays import BoolArray, FloatArray
 from ..reducer import LinePair
 from ..settings import JointSettings
 from .coverage import Coverage
@@ -14,8 +14,6 @@ from .indexes import Indexes
 from .linearisation import Predictor
 from .refinement import Score
 from .unknowns import Unknowns
-
-FloatArray = npt.NDArray[np.float64]
 
 LEAST_TRAVEL = math.radians(85.0)
 """Output travel [rad] below which no part is named: half of what separates the lines by Fourier means, and less."""
@@ -75,7 +73,7 @@ class Suspect:
 
     predictor: Predictor
     values: FloatArray
-    active: npt.NDArray[np.bool_]
+    active: BoolArray
     indexes: Indexes
     scores: Mapping[int, Score]
     inflation: float

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from ..acquisition.record import JointSamples
+from ..arrays import FloatArray
 from ..reducer import LinePair
 from ..settings import JointSettings
 from .agreement import DirectionEvidence, other_teeth, reasons_against_naming
@@ -18,8 +18,6 @@ from .sensorless_doubts import STILL, complaints_about, doubts_about
 from .stroke_sums import Gram, PairOrders, gram_of_stroke, residual_of_stroke
 from .strokes import Stroke, StrokeCutter, one_speed
 from .whitening import learn_whitening
-
-FloatArray = npt.NDArray[np.float64]
 
 LEAST_SHARE = 0.1
 """Part of the motion that a direction must have to be heard."""

@@ -5,10 +5,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 from scipy import fft
 
 from ..acquisition.record import Record
+from ..arrays import BoolArray, FloatArray
 from ..errors import ParameterError
 from ..reducer import Reducer
 from .conditioning import condition
@@ -16,9 +16,6 @@ from .directions import orthonormal
 from .drive import own_acceleration, smooth_torque
 from .path import Motion, Path, paths_along
 from .tones import foreign_tones, tone_columns
-
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
 
 FREQUENCY_MARGIN = 1.25
 """Factor by which the natural frequency may turn out higher than given."""

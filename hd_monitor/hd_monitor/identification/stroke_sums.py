@@ -4,14 +4,12 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy.interpolate import BSpline
 
+from ..arrays import FloatArray
 from ..reducer import LinePair
 from .strokes import HIGHEST_SHARE, Stroke
 from .whitening import settled, whiten
-
-FloatArray = npt.NDArray[np.float64]
 
 PLACEBOS = 12
 """Placebo pairs of orders around a pair, one line separation apart: the noise floor is what a fit finds there."""

@@ -9,9 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..acquisition.record import JointSamples, Record
-
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
+from ..arrays import BoolArray, FloatArray
 
 LOWEST_FREQUENCY = 3.0
 """Hz of the first line below which friction and gravity are not told from it any more."""

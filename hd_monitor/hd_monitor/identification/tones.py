@@ -3,11 +3,10 @@
 import math
 
 import numpy as np
-import numpy.typing as npt
 from scipy import fft
 from scipy.signal import get_window
 
-FloatArray = npt.NDArray[np.float64]
+from ..arrays import FloatArray
 
 MOST_TONES = 4
 """Tones that are taken off a stretch at most."""

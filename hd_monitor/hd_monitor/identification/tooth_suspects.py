@@ -4,16 +4,14 @@ import itertools
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy.stats import f as f_distribution
 
+from ..arrays import FloatArray
 from ..reducer import LinePair, Reducer
 from .order_spectrum import HIGHEST_ORDER, OrderSpectrum
 from .pair_evidence import solve_lines
 from .stroke_sums import PairOrders
 from .tooth_pairs import TOOTH_RANGE
-
-FloatArray = npt.NDArray[np.float64]
 
 LEAST_TURNS = 0.2
 """Output revolutions below which the order spectrum is too blurred to suspect anything."""

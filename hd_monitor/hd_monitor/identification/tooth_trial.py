@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from ..acquisition.record import Record
+from ..arrays import BoolArray, FloatArray
 from ..errors import ParameterError
 from ..model.parameters import Dynamics
 from ..reducer import Reducer
@@ -18,9 +18,6 @@ from .knowledge import Knowledge
 from .linearisation import Predictor
 from .stretch import Stretch, StretchBuilder
 from .unknowns import Unknowns
-
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
 
 LONGEST = 1.5
 """Motion [s] of the oldest and of the newest stretch that a trial looks at: far apart, few samples tell orders."""

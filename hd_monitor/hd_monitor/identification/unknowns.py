@@ -4,12 +4,9 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
+from ..arrays import BoolArray, ComplexArray, FloatArray
 from ..model.parameters import Dynamics
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -87,7 +84,7 @@ class Unknowns:
         """Return the vector of a healthy reducer with all that is given taken as right."""
         return np.zeros(self.size)
 
-    def mask(self, *places: int | slice) -> npt.NDArray[np.bool_]:
+    def mask(self, *places: int | slice) -> BoolArray:
         """Mark some places, shape (unknowns,)."""
         mask = np.zeros(self.size, dtype=np.bool_)
         for place in places:

@@ -3,11 +3,9 @@
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 from scipy.linalg import solve_toeplitz
 
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
+from ..arrays import BoolArray, FloatArray
 
 TAPS = 8
 """Samples that the filter looks back: enough for servo noise, few enough to lose little at a stroke's start."""

@@ -12,8 +12,9 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from ..arrays import FloatArray
 from ..errors import ParameterError
-from .parameters import Dynamics, FloatArray
+from .parameters import Dynamics
 
 GAUSS_OFFSETS = (0.5 - np.sqrt(3.0) / 6.0, 0.5 + np.sqrt(3.0) / 6.0)
 """Places of the two Gauss-Legendre points in a step, as fractions of it; coefficients are wanted there."""

@@ -7,10 +7,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ..arrays import ComplexArray, FloatArray
 from ..errors import ParameterError
 from ..reducer import WAVE_GENERATOR_LOBES, Reducer
-
-FloatArray = npt.NDArray[np.float64]
 
 
 def _finite(name: str, value: float, *, above: float = -math.inf, at_least: float = -math.inf) -> None:
@@ -58,7 +57,7 @@ class Dynamics:
         """Mean torsional stiffness Kav = J ωn² [N·m/rad]."""
         return self.inertia * self.angular_frequency**2
 
-    def receptance(self, frequency: npt.ArrayLike) -> npt.NDArray[np.complex128]:
+    def receptance(self, frequency: npt.ArrayLike) -> ComplexArray:
         """Normalised frequency response ωn² / (ωn² - ω² + 2jζωnω) at `frequency` [Hz]; 1 at rest."""
         ratio = np.asarray(frequency, dtype=np.float64) / self.natural_frequency
         return np.asarray(1.0 / (1.0 - ratio**2 + 2j * self.damping_ratio * ratio))
@@ -103,7 +102,7 @@ class StiffnessSeries:
         return cls(tuple(np.abs(z).tolist()), tuple(np.angle(z).tolist()))
 
     @property
-    def phasors(self) -> npt.NDArray[np.complex128]:
+    def phasors(self) -> ComplexArray:
         """Complex βi·exp(j phase_i), shape (harmonics,)."""
         return np.asarray(self.beta) * np.exp(1j * np.asarray(self.phase))
 

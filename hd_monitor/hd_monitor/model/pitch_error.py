@@ -5,8 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from ..arrays import FloatArray
 from ..errors import ParameterError
-from .parameters import FloatArray, StiffnessSeries
+from .parameters import StiffnessSeries
 
 _ANGLES = 2048
 """Places of the wave generator over half a revolution at which the interference is evaluated."""

@@ -5,10 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..arrays import FloatArray
 from ..errors import ParameterError
 from ..reducer import Reducer
 from .oscillator import Oscillator, gauss_times
-from .parameters import FloatArray, ParametricModel
+from .parameters import ParametricModel
 
 AngleFunction = Callable[[FloatArray], FloatArray]
 """Output angle q [rad] at times [s], any shape."""

@@ -6,9 +6,10 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
+from ..arrays import FloatArray
 from ..errors import ParameterError
 from .oscillator import Oscillator, gauss_times
-from .parameters import FloatArray, ParametricModel, StiffnessSeries
+from .parameters import ParametricModel, StiffnessSeries
 
 _STEPS_PER_RADIAN = 12.0  # of the fastest of natural oscillation and stiffness harmonics; growth rates good to 1e-4 1/s
 

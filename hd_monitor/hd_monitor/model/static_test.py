@@ -5,8 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from ..arrays import FloatArray
 from ..errors import ParameterError
-from .parameters import FloatArray, ParametricModel
+from .parameters import ParametricModel
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

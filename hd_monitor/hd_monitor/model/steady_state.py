@@ -3,11 +3,11 @@
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from ..arrays import ComplexArray, FloatArray, IntArray
 from ..errors import ParameterError
 from ..reducer import WAVE_GENERATOR_LOBES, LinePair
-from .parameters import FloatArray, ParametricModel
+from .parameters import ParametricModel
 
 DEFAULT_COMBINATION_ORDER = 7
 """Largest abs(p) + abs(q) of the combination lines p·ωo1 + q·ωo2 kept."""
@@ -27,8 +27,8 @@ class SteadyState:
         Ω [rad/s] of the output.
     """
 
-    orders: npt.NDArray[np.int64]
-    displacement: npt.NDArray[np.complex128]
+    orders: IntArray
+    displacement: ComplexArray
     output_speed: float
 
     @property
@@ -37,7 +37,7 @@ class SteadyState:
         return np.asarray(self.orders * self.output_speed / (2.0 * np.pi))
 
     @property
-    def acceleration(self) -> npt.NDArray[np.complex128]:
+    def acceleration(self) -> ComplexArray:
         """Two-sided coefficients of θ'' [rad/s²], shape (lines,)."""
         return np.asarray(-((self.orders * self.output_speed) ** 2) * self.displacement)
 
@@ -52,7 +52,7 @@ class SteadyState:
         return 2.0 * complex(self.acceleration[match[0]]) if match.size else 0j
 
 
-def combination_orders(model: ParametricModel, order: int = DEFAULT_COMBINATION_ORDER) -> npt.NDArray[np.int64]:
+def combination_orders(model: ParametricModel, order: int = DEFAULT_COMBINATION_ORDER) -> IntArray:
     """Cycles per output revolution of the lines p·ωo1 + q·ωo2 with abs(p) + abs(q) up to `order`.
 
     A load fluctuation at another order than the lines' own spacing adds its first side lines.
@@ -131,9 +131,7 @@ def line_pairs(model: ParametricModel, speed_rpm: float, harmonics: int = 4) -> 
     )
 
 
-def _add_cosine(
-    coefficients: npt.NDArray[np.complex128], position: dict[int, int], order: int, phasor: complex
-) -> None:
+def _add_cosine(coefficients: ComplexArray, position: dict[int, int], order: int, phasor: complex) -> None:
     """Add the two-sided coefficients of Re(phasor·exp(j order q))."""
     for line, value in ((order, phasor / 2), (-order, np.conj(phasor) / 2)):
         if line in position:

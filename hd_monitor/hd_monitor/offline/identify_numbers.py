@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from scipy.optimize import brentq
 from scipy.stats import ncx2, norm
 
+from ..arrays import FloatArray
 from ..identification.indexes import stiffness_indexes
 from ..identification.result import Identification
 from ..identification.unknowns import Unknowns
@@ -118,7 +118,7 @@ def magnitude_interval(size: float, std: float) -> Interval:
     return Interval(bound(0.5 + 0.5 * CONFIDENCE), max(bound(0.5 - 0.5 * CONFIDENCE), std))
 
 
-def _harmonic(k: int, phasor: complex, covariance: npt.NDArray[np.float64] | None) -> Harmonic:
+def _harmonic(k: int, phasor: complex, covariance: FloatArray | None) -> Harmonic:
     if covariance is None:
         unknown = Estimate.gaussian(abs(phasor), math.nan)
         return Harmonic(k=k, beta=unknown, phase=math.atan2(phasor.imag, phasor.real), phase_std=math.nan)

@@ -8,9 +8,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..arrays import FloatArray
 from ..errors import HdMonitorError, ParameterError
 from ..model import ParametricModel, StiffnessSeries, Torque
-from ..model.parameters import FloatArray
 from ..model.pitch_error import PitchErrors
 from ..model.static_test import StaticTestBed
 from ..settings import PARAMETERS, JointSettings

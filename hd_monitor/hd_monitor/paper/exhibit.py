@@ -3,12 +3,9 @@
 from dataclasses import dataclass, field
 from typing import Literal
 
-import numpy as np
-import numpy.typing as npt
-
+from ..arrays import FloatArray
 from .claim import Claim
 
-FloatArray = npt.NDArray[np.float64]
 Style = Literal["line", "fine", "dashed", "points", "stems", "dotted points"]
 
 

@@ -6,8 +6,8 @@ from itertools import pairwise
 import numpy as np
 
 from ..analysis.zoom import Zoom
+from ..arrays import FloatArray
 from ..model import ParametricModel
-from ..model.parameters import FloatArray
 from . import printed
 from .cases import Cases
 from .claim import Claim

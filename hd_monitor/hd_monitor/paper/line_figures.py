@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 
 from ..analysis.zoom import Zoom, zoom_spectrum
+from ..arrays import FloatArray
 from ..model import ParametricModel, StiffnessSeries, steady_state
-from ..model.parameters import FloatArray
 from . import printed
 from .cases import Case, Cases
 from .claim import Claim

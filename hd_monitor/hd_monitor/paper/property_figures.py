@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..arrays import FloatArray
 from ..model import growth_rate, steady_state
-from ..model.parameters import FloatArray
 from .cases import Case, Cases
 from .claim import Claim
 from .exhibit import Curve, Exhibit, Panel

@@ -7,8 +7,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy.signal import periodogram
 
+from ..arrays import FloatArray
 from ..model import ParametricModel
-from ..model.parameters import FloatArray
 from ..model.simulation import TimeResponse, constant_speed, simulate
 
 SETTLING_TIME_CONSTANTS = 20.0

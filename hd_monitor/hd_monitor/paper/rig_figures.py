@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.signal import hilbert
 
+from ..arrays import FloatArray
 from ..model import line_pairs
-from ..model.parameters import FloatArray
 from ..reducer import LinePair
 from . import printed
 from .cases import Case, Cases

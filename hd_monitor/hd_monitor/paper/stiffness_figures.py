@@ -4,8 +4,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..arrays import FloatArray
 from ..model import ParametricModel, StiffnessSeries
-from ..model.parameters import FloatArray
 from ..model.static_test import StiffnessFit, fit_stiffness
 from . import printed
 from .cases import Case, Cases

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..arrays import FloatArray
 from ..model import growth_rate
-from ..model.parameters import FloatArray
 from ..model.simulation import linear_sweep, simulate
 from . import printed
 from .cases import Case, Cases

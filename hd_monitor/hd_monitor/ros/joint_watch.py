@@ -6,8 +6,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..adapters import FloatArray, Inputs, IntArray
+from ..adapters import Inputs
 from ..analysis.zoom import ZoomSpectrum
+from ..arrays import FloatArray, IntArray
 from ..assessment import Assessment
 from ..contract import NANOSECONDS, Block
 from ..diagnosis.status import Status, status_of

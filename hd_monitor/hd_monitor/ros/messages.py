@@ -3,13 +3,13 @@
 import array
 
 import numpy as np
-import numpy.typing as npt
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from std_msgs.msg import Float64MultiArray, MultiArrayDimension, MultiArrayLayout
 
 from ..analysis.rms_curve import RmsCurve
 from ..analysis.zoom import ZoomSpectrum
+from ..arrays import FloatArray
 from ..contract import Dimension, rms_layout, zoom_layout
 from ..diagnosis.status import Status
 
@@ -47,7 +47,7 @@ def rms_message(curve: RmsCurve) -> Float64MultiArray:
     return _multi_array(rms_layout(len(table)), table)
 
 
-def _multi_array(dimensions: tuple[Dimension, ...], table: npt.NDArray[np.float64]) -> Float64MultiArray:
+def _multi_array(dimensions: tuple[Dimension, ...], table: FloatArray) -> Float64MultiArray:
     layout = MultiArrayLayout(
         dim=[MultiArrayDimension(label=d.label, size=d.size, stride=d.stride) for d in dimensions]
     )

@@ -1,17 +1,17 @@
 """The recovered clock is even, keeps every sample in its place and does not mind jitter, loss or disorder."""
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from hd_monitor.acquisition.clock import recover_clock
+from hd_monitor.arrays import FloatArray
 
 PERIOD = 1e-3
 
 
-def even(count: int, seed: int, jitter: float) -> npt.NDArray[np.float64]:
+def even(count: int, seed: int, jitter: float) -> FloatArray:
     stamps = 12.5 + PERIOD * np.arange(count) + np.random.default_rng(seed).normal(0.0, jitter, count)
     return np.asarray(stamps, dtype=np.float64)
 

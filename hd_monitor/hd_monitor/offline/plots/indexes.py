@@ -4,9 +4,9 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from matplotlib.figure import Figure
 
+from ...arrays import FloatArray
 from .style import CIRCULAR_SPLINE, ERROR_COLOUR, FLEXSPLINE, INK, WARN_COLOUR, legend_above, limits, new_figure
 
 _BANDS = 1.96
@@ -51,7 +51,7 @@ def indexes_plot(
         return figure
 
 
-def _levels(axes: Any, seconds: npt.NDArray[np.float64], step: float, levels: Sequence[int]) -> None:
+def _levels(axes: Any, seconds: FloatArray, step: float, levels: Sequence[int]) -> None:
     """Draw the level as a ribbon, hatched, so that its colours are not needed."""
     shown = set()
     start = 0
@@ -74,5 +74,5 @@ def _levels(axes: Any, seconds: npt.NDArray[np.float64], step: float, levels: Se
     axes.legend(loc="upper right", bbox_to_anchor=(1.0, -0.45), ncols=3, handlelength=1.6)
 
 
-def _numbers(timeline: Sequence[Mapping[str, Any]], name: str) -> npt.NDArray[np.float64]:
+def _numbers(timeline: Sequence[Mapping[str, Any]], name: str) -> FloatArray:
     return np.array([np.nan if entry[name] is None else entry[name] for entry in timeline], dtype=np.float64)

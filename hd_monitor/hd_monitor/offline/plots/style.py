@@ -7,13 +7,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import matplotlib as mpl
-import numpy as np
-import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-FloatArray = npt.NDArray[np.float64]
+from ...arrays import FloatArray
 
 DOTS_PER_INCH = 150
 WIDE = (8.0, 4.2)

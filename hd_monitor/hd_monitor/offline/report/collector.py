@@ -3,10 +3,10 @@
 from collections import deque
 
 import numpy as np
-import numpy.typing as npt
 
 from ...acquisition.record import JointSamples
 from ...analysis.zoom import ZoomSpectrum
+from ...arrays import FloatArray
 from ...assessment import Assessment
 from ...contract import NANOSECONDS
 from ...settings import JointSettings
@@ -14,8 +14,6 @@ from .lines_by_speed import LinesBySpeed
 from .spectra import OrderMapAccumulator, filled
 from .speed_bins import SpeedBins
 from .waterfall import WaterfallAccumulator
-
-FloatArray = npt.NDArray[np.float64]
 
 _TAIL = 120_000  # samples kept of the recording's end
 _AS_GOOD = 0.8

@@ -3,13 +3,11 @@
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from ...acquisition.record import Record
+from ...arrays import FloatArray
 from ...reducer import LinePair
 from .speed_bins import SpeedBins
-
-FloatArray = npt.NDArray[np.float64]
 
 _WORST_CONDITION = 12.0  # about a third of the travel that parts the first pair by Fourier means
 _FASTEST_CHANGE = 1.5  # bins a record: faster, the vibration does not follow the speed

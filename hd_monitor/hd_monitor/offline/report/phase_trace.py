@@ -4,13 +4,11 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from ...acquisition.record import Record
+from ...arrays import FloatArray
 from ...reducer import Reducer
 from .spectra import filled, whole_runs
-
-FloatArray = npt.NDArray[np.float64]
 
 _FINER = 8
 _FEWEST_CYCLES = 12

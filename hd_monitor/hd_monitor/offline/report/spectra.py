@@ -4,13 +4,11 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from scipy.signal import get_window
 
 from ...acquisition.record import Record
+from ...arrays import FloatArray
 from .speed_bins import SpeedBins
-
-FloatArray = npt.NDArray[np.float64]
 
 _SHORTEST_PIECE = 0.25  # s
 _SMALL_HOLE = 3  # samples

@@ -4,12 +4,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from ...acquisition.record import Record
+from ...arrays import BoolArray, FloatArray, IntArray
 from ...reducer import Reducer
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,10 +31,10 @@ class SpeedBins:
         """Wave-generator speed at each sample [rpm], with the output's sign."""
         return np.asarray(record.speed * self.reducer.reduction * 60.0 / math.tau)
 
-    def turning(self, rpm: FloatArray) -> npt.NDArray[np.bool_]:
+    def turning(self, rpm: FloatArray) -> BoolArray:
         """Whether the joint turns, at each speed [rpm]."""
         return np.asarray(np.abs(rpm) > self.minimum_speed)
 
-    def number(self, rpm: FloatArray) -> npt.NDArray[np.int64]:
+    def number(self, rpm: FloatArray) -> IntArray:
         """Number of the bin of each speed [rpm], whatever the direction; bin n is centred on n widths."""
         return np.asarray(np.rint(np.abs(rpm) / self.width), dtype=np.int64)

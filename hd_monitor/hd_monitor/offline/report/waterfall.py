@@ -3,13 +3,11 @@
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from scipy.signal import get_window
 
 from ...acquisition.record import Record
+from ...arrays import FloatArray
 from .spectra import filled, whole_runs
-
-FloatArray = npt.NDArray[np.float64]
 
 _BINS = 250
 _MOST_ROWS = 400
