@@ -7,11 +7,11 @@ import numpy as np
 
 from .acquisition.quality import Quality
 from .acquisition.record import JointSamples, Record
-from .analysis.rms_curve import RmsCurve
-from .analysis.steady import join
-from .analysis.zoom import ZoomSpectrum, zoom_spectrum
 from .diagnosis.verdict import Verdict
 from .identification.result import Identification
+from .orders.rms_curve import RmsCurve
+from .orders.steady import join
+from .orders.zoom import ZoomSpectrum, zoom_spectrum
 from .reducer import Reducer
 
 _FEWEST_SAMPLES = 16  # of a stretch worth a picture

@@ -9,8 +9,6 @@ import numpy.typing as npt
 
 from .acquisition.recorder import Harvest, Recorder
 from .acquisition.stream import StampedBuffer
-from .analysis.rms_curve import RmsAccumulator
-from .analysis.steady import SteadyStretch
 from .arrays import FloatArray
 from .assessment import Assessment
 from .contract import NANOSECONDS, Block
@@ -19,7 +17,9 @@ from .diagnosis.judge import Judge, Limits
 from .diagnosis.verdict import Verdict
 from .identification.identifier import Identifier
 from .identification.result import Identification
-from .identification.sensorless import SensorlessIdentifier
+from .identification.sensorless.identifier import SensorlessIdentifier
+from .orders.rms_curve import RmsAccumulator
+from .orders.steady import SteadyStretch
 from .settings import JointSettings
 from .timeline import Timeline, Window
 

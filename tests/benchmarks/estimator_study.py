@@ -26,12 +26,12 @@ from pathlib import Path
 import numpy as np
 
 from hd_monitor.acquisition.record import Record
-from hd_monitor.analysis.line_regression import fit_lines
-from hd_monitor.analysis.zoom import zoom_spectrum
 from hd_monitor.diagnosis.judge import Judge, Limits
 from hd_monitor.diagnosis.verdict import Component
 from hd_monitor.errors import HdMonitorError
 from hd_monitor.identification.identifier import Identifier
+from hd_monitor.orders.regression import fit_lines
+from hd_monitor.orders.zoom import zoom_spectrum
 from hd_monitor.reducer import LinePair
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))

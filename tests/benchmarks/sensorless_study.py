@@ -19,8 +19,8 @@ from tests.benchmarks.sensorless_joint import random_joint, simulate_joint
 from hd_monitor.acquisition.record import JointSamples
 from hd_monitor.diagnosis import Component, Judge, Limits
 from hd_monitor.identification.result import Identification
-from hd_monitor.identification.sensorless import SensorlessIdentifier
-from hd_monitor.identification.tooth_pairs import rank_tooth_pairs
+from hd_monitor.identification.sensorless.identifier import SensorlessIdentifier
+from hd_monitor.identification.teeth.ranking import rank_tooth_pairs
 from hd_monitor.reducer import LinePair
 from hd_monitor.settings import JointSettings
 

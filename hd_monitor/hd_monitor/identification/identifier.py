@@ -6,9 +6,9 @@ import numpy as np
 
 from ..acquisition.record import Record
 from ..settings import JointSettings
-from .collector import Collector
-from .estimation import Estimation
 from .result import Identification
+from .segment.assembly import Collector
+from .with_sensor.estimation import Estimation
 
 CRUISE_STRETCH, SHORTEST_STRETCH = 2.0, 1.0
 """Length [s] of the stretches looked at once the indexes are known well enough, and once they are known far better."""

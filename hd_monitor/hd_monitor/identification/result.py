@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from ..arrays import ComplexArray, FloatArray
 from ..model.parameters import ParametricModel
 from ..reducer import LinePair
-from .margin import instability_speed
+from .checks.critical_speed import instability_speed
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -9,11 +9,11 @@ from typing import Any
 from ..acquisition.quality import Quality
 from ..assessment import Assessment
 from ..errors import ParameterError
-from ..identification.agreement import DirectionEvidence
 from ..identification.identifier import Identifier
 from ..identification.result import Identification
-from ..identification.sensorless import SensorlessIdentifier
-from ..identification.tooth_pairs import ToothPairRanking
+from ..identification.sensorless.agreement import DirectionEvidence
+from ..identification.sensorless.identifier import SensorlessIdentifier
+from ..identification.teeth.ranking import ToothPairRanking
 from ..settings import JointSettings
 from .bag import Bag
 from .errors import BagError

@@ -9,7 +9,7 @@ import yaml
 
 from .. import __version__
 from ..acquisition.quality import Quality
-from ..identification.tooth_pairs import ToothPairRanking
+from ..identification.teeth.ranking import ToothPairRanking
 from . import identify_numbers as numbers
 from .identify import JointIdentification
 from .identify_numbers import Estimate, Harmonic

@@ -7,8 +7,8 @@ import numpy as np
 
 from ..acquisition.record import JointSamples, Record
 from ..assessment import Assessment
-from ..identification.strokes import samples_of_records
-from ..identification.tooth_pairs import ToothPairRanking, rank_tooth_pairs
+from ..identification.teeth.ranking import ToothPairRanking, rank_tooth_pairs
+from ..orders.joint_segment import samples_of_records
 from ..settings import JointSettings
 
 LONGEST = 600.0

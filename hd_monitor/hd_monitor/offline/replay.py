@@ -7,7 +7,7 @@ from ..adapters import Inputs
 from ..assessment import Assessment
 from ..contract import NANOSECONDS
 from ..identification.identifier import Identifier
-from ..identification.sensorless import SensorlessIdentifier
+from ..identification.sensorless.identifier import SensorlessIdentifier
 from ..monitor import Monitor
 from .bag import Bag, Window
 from .plan import JointPlan

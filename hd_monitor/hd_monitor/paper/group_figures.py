@@ -5,9 +5,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..analysis.zoom import Zoom
 from ..arrays import FloatArray
 from ..model import ParametricModel
+from ..orders.zoom import Zoom
 from . import printed
 from .cases import Cases
 from .claim import Claim

@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..analysis.zoom import Zoom, zoom_spectrum
 from ..arrays import FloatArray
 from ..model import ParametricModel, StiffnessSeries, steady_state
+from ..orders.zoom import Zoom, zoom_spectrum
 from . import printed
 from .cases import Case, Cases
 from .claim import Claim

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..adapters import Inputs
-from ..analysis.zoom import ZoomSpectrum
 from ..arrays import FloatArray, IntArray
 from ..assessment import Assessment
 from ..contract import NANOSECONDS, Block
@@ -15,6 +14,7 @@ from ..diagnosis.status import Status, status_of
 from ..diagnosis.verdict import Component, FaultCode, Level, Verdict
 from ..errors import HdMonitorError
 from ..monitor import Monitor
+from ..orders.zoom import ZoomSpectrum
 from ..settings import JointSettings
 
 VIBRATION = "vibration"

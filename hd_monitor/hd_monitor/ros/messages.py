@@ -7,11 +7,11 @@ from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from std_msgs.msg import Float64MultiArray, MultiArrayDimension, MultiArrayLayout
 
-from ..analysis.rms_curve import RmsCurve
-from ..analysis.zoom import ZoomSpectrum
 from ..arrays import FloatArray
 from ..contract import Dimension, rms_layout, zoom_layout
 from ..diagnosis.status import Status
+from ..orders.rms_curve import RmsCurve
+from ..orders.zoom import ZoomSpectrum
 
 LEVELS = (DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR)
 """By number; the message wants bytes and takes an int without complaint, which then is garbage on the wire."""

@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
-from hd_monitor.analysis.rms_curve import RmsCurve, SpeedBin
-from hd_monitor.analysis.zoom import zoom_spectrum
 from hd_monitor.diagnosis.status import Status
+from hd_monitor.orders.rms_curve import RmsCurve, SpeedBin
+from hd_monitor.orders.zoom import zoom_spectrum
 from hd_monitor.reducer import LinePair
 
 pytestmark = pytest.mark.ros

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ...analysis.rms_curve import SpeedBin
+from ...orders.rms_curve import SpeedBin
 from .style import AFTER, BEFORE, INK, SOFT, Look, legend_above, new_figure, room_above
 
 _CURVE = Look(label="RMS", colour=INK, marker="o", line="-")

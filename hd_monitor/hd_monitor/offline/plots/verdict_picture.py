@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ...analysis.zoom import ZoomSpectrum
+from ...orders.zoom import ZoomSpectrum
 from .style import CIRCULAR_SPLINE, FLEXSPLINE, SOFT, Look, draw_spectrum, new_figure, room_above
 
 _TITLE_WIDTH = 78

@@ -5,10 +5,10 @@ from collections import deque
 import numpy as np
 
 from ...acquisition.record import JointSamples
-from ...analysis.zoom import ZoomSpectrum
 from ...arrays import FloatArray
 from ...assessment import Assessment
 from ...contract import NANOSECONDS
+from ...orders.zoom import ZoomSpectrum
 from ...settings import JointSettings
 from .lines_by_speed import LinesBySpeed
 from .spectra import OrderMapAccumulator, filled

@@ -7,8 +7,8 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from ...analysis.rms_curve import SpeedBin
 from ...model.parameters import Dynamics
+from ...orders.rms_curve import SpeedBin
 from ...reducer import Reducer
 from ..comparison import JointChange
 from ..plots.index_change import index_change_plot

@@ -1,1 +1,0 @@
-"""Spectra, RMS per speed and line pairs."""

@@ -1,0 +1,255 @@
+"""Gauss-Newton fit of the unknowns to a number of stretches at once."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...arrays import BoolArray, FloatArray
+from ..segment.segment import FREQUENCY_MARGIN, Stretch
+from .information import Knowledge
+from .linearisation import Predictor
+from .noise import NoiseFloor
+from .normal_equations import Evidence, NormalEquations, examine
+from .unknowns import Unknowns
+
+LARGEST_FLUCTUATION = 0.8
+"""Sum of all abs(β) beyond which the stiffness would come near zero; steps end there."""
+
+CONVERGED = 0.05
+"""Size of a step, in standard deviations of the unknowns, below which the fit stands."""
+
+NEGLIGIBLE = 0.1
+"""Standard deviations that a step may miss its end by for being taken along a straight line."""
+
+_NEARBY = 0.5  # of the steps over which derivatives change by their own size
+_HALVINGS = 5
+_TRIAL_ROUNDS = 3  # after which the best of several starts go on
+_FINALISTS = 2
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Fit:
+    """A point reached by Gauss-Newton steps.
+
+    Attributes
+    ----------
+    values : ndarray, shape (unknowns,)
+    evidence : tuple of Evidence
+        Of every stretch, at `values`.
+    equations : NormalEquations
+        Their sum, without the prior.
+    cost : float
+        Cost including the prior's.
+    step : ndarray, shape (unknowns,)
+        The next step.
+    step_size : float
+        Its size in standard deviations of the unknowns.
+    covariance : ndarray, shape (unknowns, unknowns)
+        Of the unknowns fitted, by the information of the stretches and the prior; 0 for the others.
+    """
+
+    values: FloatArray
+    evidence: tuple[Evidence, ...]
+    equations: NormalEquations
+    cost: float
+    step: FloatArray
+    step_size: float
+    covariance: FloatArray
+
+    @property
+    def floor(self) -> NoiseFloor:
+        """Noise floor of what the fit leaves."""
+        floor = NoiseFloor()
+        for item in self.evidence:
+            floor = floor.updated(item.stretch, item.residual, item.leverage(self.covariance))
+        return floor
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Problem:
+    """Stretches to be explained, and what the explanation may use.
+
+    Attributes
+    ----------
+    stretches : sequence of Stretch
+    predictor : Predictor
+    prior : Knowledge
+    floor : NoiseFloor
+    active : ndarray of bool, shape (unknowns,)
+        Unknowns that may move.
+    """
+
+    stretches: Sequence[Stretch]
+    predictor: Predictor
+    prior: Knowledge
+    floor: NoiseFloor
+    active: BoolArray
+
+    def at(self, values: FloatArray) -> Fit:
+        """Evaluate a point."""
+        return self._fit(
+            values, tuple(examine(stretch, self.predictor, values, self.floor) for stretch in self.stretches)
+        )
+
+    def near(self, values: FloatArray, known: Mapping[Stretch, Evidence]) -> Fit:
+        """Evaluate a point to first order from where stretches were simulated nearby; simulate the others."""
+        reach = _NEARBY * _linear_range(self.predictor.unknowns)
+        evidence = []
+        for stretch in self.stretches:
+            item = known.get(stretch)
+            if item is None or bool((np.abs(values - item.simulated) > reach).any()):
+                evidence.append(examine(stretch, self.predictor, values, self.floor))
+            else:
+                evidence.append(item.moved(values - item.values).weighted(self.floor))
+        return self._fit(values, tuple(evidence))
+
+    def _fit(self, values: FloatArray, evidence: tuple[Evidence, ...]) -> Fit:
+        equations = evidence[0].equations
+        for item in evidence[1:]:
+            equations = equations + item.equations
+        information = equations.information + self.prior.information
+        right = equations.gradient + self.prior.gradient(values)
+        covariance = np.zeros(information.shape)
+        place = np.ix_(self.active, self.active)
+        covariance[place] = np.linalg.pinv(information[place], rcond=1e-13, hermitian=True)
+        step = covariance @ right
+        return Fit(
+            values=values,
+            evidence=evidence,
+            equations=equations,
+            cost=equations.cost + self.prior.cost(values),
+            step=step,
+            step_size=math.sqrt(max(float(step @ information @ step), 0.0)),
+            covariance=covariance,
+        )
+
+    def solve(self, start: FloatArray | Fit, *, rounds: int) -> Fit:
+        """Take Gauss-Newton steps from `start`, at most `rounds`."""
+        return self._descend(self._started(start), rounds)
+
+    def solve_near(self, start: FloatArray, known: Mapping[Stretch, Evidence], *, rounds: int) -> Fit:
+        """Do the same, with a first step from what is `known` of the stretches at other points, if it leads down."""
+        rough = self.near(start, known)
+        trial = self.at(self._bounded(start + rough.step * self._room(start, rough.step)))
+        if math.isfinite(trial.cost) and trial.cost < rough.cost:
+            return self._descend(trial, rounds - 1)
+        return self.solve(start, rounds=rounds)
+
+    def _started(self, start: FloatArray | Fit) -> Fit:
+        """Evaluate the start; of one that was simulated already, only the weights are new."""
+        if not isinstance(start, Fit):
+            return self.at(start)
+        here = tuple(item.stretch for item in start.evidence if item.values is item.simulated)
+        if here != tuple(self.stretches):
+            return self.at(start.values)
+        return self._fit(start.values, tuple(item.weighted(self.floor) for item in start.evidence))
+
+    def _descend(self, fit: Fit, rounds: int) -> Fit:
+        for _ in range(rounds):
+            if fit.step_size < CONVERGED:
+                break
+            if self._curvature(fit) < NEGLIGIBLE:
+                return self._moved(fit)
+            step = fit.step * self._room(fit.values, fit.step)
+            for _ in range(_HALVINGS):
+                trial = self.at(self._bounded(fit.values + step))
+                if math.isfinite(trial.cost) and trial.cost < fit.cost:
+                    break
+                step = 0.4 * step
+            else:
+                break
+            fit = trial
+        return fit
+
+    def _curvature(self, fit: Fit) -> float:
+        """Size of what the model is beyond linear over the next step, in standard deviations of the unknowns."""
+        unknowns = self.predictor.unknowns
+        part = np.abs(fit.step) / _linear_range(unknowns)
+        forces = unknowns.mask(unknowns.load, unknowns.torque, unknowns.inertia)
+        information = fit.equations.information + self.prior.information
+        forced, rest = (
+            math.sqrt(max(float(step @ information @ step), 0.0)) for step in (fit.step * forces, fit.step * ~forces)
+        )
+        # The prediction is linear in the forces: they bend it together with the other unknowns only
+        return (forced + rest) * float(part[~forces].max()) + rest * float(part[forces].max())
+
+    def _moved(self, fit: Fit) -> Fit:
+        """Return the fit after its next step, which is so small that evaluating the model there adds nothing."""
+        equations = fit.equations.moved(fit.step)
+        values = fit.values + fit.step
+        return Fit(
+            values=values,
+            evidence=tuple(item.moved(fit.step) for item in fit.evidence),
+            equations=equations,
+            cost=equations.cost + self.prior.cost(values),
+            step=np.zeros(values.size),
+            step_size=0.0,
+            covariance=fit.covariance,
+        )
+
+    def explore(self, starts: Sequence[FloatArray], *, rounds: int) -> tuple["Problem", Fit]:
+        """Solve from several starts and return the best solution, with the floor of white noise that belongs to it.
+
+        The first step from each start leaves the load where the start has it: only then do the stiffness unknowns
+        mean anything to the load. While the residual is still large the floor is taken to be white, lest the lines
+        that are not explained yet pass for noise.
+        """
+        unknowns = self.predictor.unknowns
+        held = self.active & ~unknowns.mask(unknowns.load)
+        first = [replace(self, active=held).solve(start, rounds=1) for start in starts]
+        tried = sorted((self._scaled(fit)._priced(fit, _TRIAL_ROUNDS) for fit in first), key=lambda t: t[0])
+        final = [problem._scaled(fit)._priced(fit, rounds) for _, problem, fit in tried[:_FINALISTS]]
+        _, problem, fit = min(final, key=lambda t: t[0])
+        return problem, fit
+
+    def _scaled(self, fit: Fit) -> "Problem":
+        """Return the problem with a floor of white noise as strong as what a fit leaves."""
+        return replace(self, floor=NoiseFloor.white(self.floor.mean * fit.equations.cost / fit.equations.freedom))
+
+    def _priced(self, start: Fit, rounds: int) -> tuple[float, "Problem", Fit]:
+        """Solve, and give minus twice the logarithm of the likelihood, the noise's variance being at its own best."""
+        fit = self.solve(start, rounds=rounds)
+        freedom = fit.equations.freedom
+        return freedom * math.log(self.floor.mean * fit.equations.cost) + self.prior.cost(fit.values), self, fit
+
+    def _bounded(self, values: FloatArray) -> FloatArray:
+        """Return the values with those that have natural bounds kept within."""
+        unknowns = self.predictor.unknowns
+        bounded = values.copy()
+        for place, bound in (
+            (unknowns.frequency, math.log(FREQUENCY_MARGIN)),
+            (unknowns.damping, 1.5),
+            (unknowns.torque, 4.0),
+            (unknowns.delay, 0.05),
+        ):
+            bounded[place] = min(max(float(values[place]), -bound), bound)
+        return bounded
+
+    def _room(self, values: FloatArray, step: FloatArray) -> float:
+        """Part of a step that keeps the stiffness positive."""
+        unknowns = self.predictor.unknowns
+        factor = 1.0
+        while factor > 1e-3:
+            total = sum(
+                float(np.abs(unknowns.phasors(values + factor * step, part)).sum())
+                for part in (unknowns.circular_spline, unknowns.flexspline)
+            )
+            if total < LARGEST_FLUCTUATION:
+                break
+            factor *= 0.6
+        return factor
+
+
+def _linear_range(unknowns: Unknowns) -> FloatArray:
+    """Steps over which the prediction's derivatives change by about their own size; near a resonance they are small."""
+    span = np.empty(unknowns.size)
+    span[unknowns.stiffness] = 0.05
+    span[unknowns.load] = 1.0
+    span[unknowns.frequency] = 0.01
+    span[unknowns.damping] = 0.3
+    span[unknowns.torque] = 1.0
+    span[unknowns.delay] = 5e-4
+    span[unknowns.inertia] = 1.0
+    return span

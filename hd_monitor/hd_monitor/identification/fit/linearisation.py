@@ -1,0 +1,151 @@
+"""The model's prediction of a stretch, and how it changes with every unknown."""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...arrays import FloatArray
+from ...interpolation import hermite
+from ...model.oscillator import GAUSS_OFFSETS, Oscillator
+from ...model.parameters import Dynamics
+from ..segment.path import Path
+from ..segment.segment import Stretch
+from .unknowns import Unknowns
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Linearisation:
+    """A stretch's prediction error and its derivatives; all in rad/s², one row a sample.
+
+    Attributes
+    ----------
+    residual : ndarray, shape (samples,)
+        Measured minus predicted θ''; 0 where samples are left out.
+    predicted : ndarray, shape (samples,)
+        Prediction, with the free vibration that fits the measurement best.
+    jacobian : ndarray, shape (samples, unknowns)
+        Derivatives of the prediction.
+    free : ndarray, shape (samples, 2)
+        The two free vibrations: whatever the state at the stretch's start was, it is a combination of them.
+    """
+
+    residual: FloatArray
+    predicted: FloatArray
+    jacobian: FloatArray
+    free: FloatArray
+
+    def moved(self, stretch: Stretch, step: FloatArray) -> "Linearisation":
+        """Return the linearisation at a point a small `step` of the unknowns on, to first order of the step.
+
+        The free vibration is fitted to the measurement anew; the derivatives stay as they are.
+        """
+        start, residual = _fit_free(stretch, self.residual - self.jacobian @ step, self.free)
+        predicted = self.predicted + self.jacobian @ step + self.free @ start
+        return replace(self, residual=residual, predicted=predicted)
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Predictor:
+    """Predicts stretches.
+
+    Attributes
+    ----------
+    unknowns : Unknowns
+    given : Dynamics
+        Natural frequency and damping at which their unknowns are 0, and the inertia.
+    reference_torque : float
+        Torque [N·m] in whose unit the load fluctuations are expressed.
+    """
+
+    unknowns: Unknowns
+    given: Dynamics
+    reference_torque: float
+
+    def linearise(self, stretch: Stretch, values: FloatArray) -> Linearisation:
+        """Simulate a stretch and, along the same motion, the effect of every unknown.
+
+        Every sensitivity obeys the oscillator's own equation with another input (differentiate eq. 3 of Gu et al.
+        2021 by the unknown), so that one set of transition matrices serves them all.
+        """
+        dynamics = self.unknowns.dynamics(self.given, values)
+        omega, step = dynamics.angular_frequency, stretch.period / stretch.substeps
+        gauss = _Along(self, stretch.at_gauss, values, dynamics)
+        nodes = _Along(self, stretch.at_steps, values, dynamics)
+        oscillator = Oscillator(dynamics, gauss.stiffness - 1.0, step)
+        damping = 2.0 * dynamics.damping_ratio * omega
+        spring = (omega**2 * nodes.stiffness)[:, None]
+
+        # From the quasi-static wind-up, and the two free vibrations
+        inputs, force = np.zeros((2, oscillator.steps, 3)), np.zeros((oscillator.steps + 1, 3))
+        inputs[..., 0], force[:, 0] = gauss.drive, nodes.drive
+        wound = force[0, 0] / spring[0, 0]
+        base = oscillator.respond(inputs, initial=[[wound, 1.0, 0.0], [0.0, 0.0, omega]])
+        motion = force - damping * base.velocity - spring * base.displacement
+        sampled = motion[:: stretch.substeps]
+        start, residual = _fit_start(stretch, sampled)
+        mix = np.concatenate([[1.0], start])
+        theta, theta_dot, theta_ddot = base.displacement @ mix, base.velocity @ mix, motion @ mix
+
+        u_gauss = gauss.forcing(_hermite(theta, theta_dot * step), _hermite(theta_dot, theta_ddot * step))
+        change = oscillator.respond(u_gauss)
+        jacobian = nodes.forcing(theta, theta_dot)
+        jacobian -= damping * change.velocity
+        jacobian -= spring * change.displacement
+        return Linearisation(
+            residual=residual, predicted=sampled @ mix, jacobian=jacobian[:: stretch.substeps], free=sampled[:, 1:]
+        )
+
+
+class _Along:
+    """The model's coefficients along a path, and the inputs of the sensitivities' equations."""
+
+    def __init__(self, predictor: Predictor, path: Path, values: FloatArray, dynamics: Dynamics) -> None:
+        self._unknowns = unknowns = predictor.unknowns
+        self._path, self._dynamics = path, dynamics
+        self._beta = values[unknowns.stiffness]
+        self._lines = path.lines_after(float(values[unknowns.delay]))
+        self._load_unit = predictor.reference_torque / predictor.given.inertia
+        self._torque = math.exp(values[unknowns.torque]) / predictor.given.inertia * path.torque
+        self.stiffness = np.asarray(1.0 + self._lines @ self._beta)
+        inertial = values[unknowns.inertia] * path.acceleration
+        self.drive = np.asarray(self._torque + self._load_unit * (path.loads @ values[unknowns.load]) - inertial)
+
+    def forcing(self, theta: FloatArray, theta_dot: FloatArray) -> FloatArray:
+        """Inputs [rad/s² per unit of each unknown] where θ and θ' are as given, shape (..., unknowns)."""
+        unknowns, path = self._unknowns, self._path
+        omega = self._dynamics.angular_frequency
+        spring = -(omega**2) * theta
+        forcing = np.empty((*theta.shape, unknowns.size))
+        np.multiply(self._lines, spring[..., None], out=forcing[..., unknowns.stiffness])
+        np.multiply(path.loads, self._load_unit, out=forcing[..., unknowns.load])
+        friction = -2.0 * self._dynamics.damping_ratio * omega * theta_dot
+        forcing[..., unknowns.frequency] = friction + 2.0 * spring * self.stiffness
+        forcing[..., unknowns.damping] = friction
+        forcing[..., unknowns.torque] = self._torque
+        forcing[..., unknowns.inertia] = -path.acceleration
+        # d cos = -sin, d(-sin) = -cos: the other column of the pair, with its sign
+        turned = (path.rates * self._beta).reshape(2, 2, -1)[:, ::-1] * [[-1.0], [1.0]]
+        forcing[..., unknowns.delay] = spring * path.speed * (self._lines @ turned.ravel())
+        return forcing
+
+
+def _fit_start(stretch: Stretch, motion: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Amounts of the two free vibrations that fit the measurement best, and what then remains of it."""
+    return _fit_free(stretch, stretch.acceleration - motion[:, 0], motion[:, 1:])
+
+
+def _fit_free(stretch: Stretch, error: FloatArray, motion: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Amounts of two free vibrations that fit an error best, and what then remains of it."""
+    used, slow = stretch.used, stretch.slow
+    error = np.where(used, error, 0.0)
+    free = motion * used[:, None]
+    flat_error, flat_free = error - slow @ (slow.T @ error), free - slow @ (slow.T @ free)
+    start = np.linalg.lstsq(flat_free, flat_error, rcond=1e-9)[0]
+    return start, error - free @ start
+
+
+def _hermite(values: FloatArray, slopes: FloatArray) -> FloatArray:
+    """Values at the Gauss points of every step, shape (2, steps); `slopes` are per step."""
+    u = np.asarray(GAUSS_OFFSETS)[:, None]
+    return hermite(values[:-1], values[1:], slopes[:-1], slopes[1:], u)

@@ -1,0 +1,154 @@
+"""Evidence as normal equations: what a stretch says about the unknowns around a point, in sums that add up."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...arrays import FloatArray
+from ..segment.segment import Stretch
+from .linearisation import Linearisation, Predictor
+from .noise import NoiseFloor
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class NormalEquations:
+    """Quadratic model of the cost, ``cost - 2 gradient·d + d·information·d``, for a step d of the unknowns.
+
+    Attributes
+    ----------
+    information : ndarray, shape (unknowns, unknowns)
+        Fisher information.
+    gradient : ndarray, shape (unknowns,)
+    cost : float
+        Sum of squares of the residual in units of the noise floor.
+    freedom : float
+        Expectation of the cost if the residual is nothing but noise.
+    """
+
+    information: FloatArray
+    gradient: FloatArray
+    cost: float
+    freedom: float
+
+    def moved(self, step: FloatArray) -> "NormalEquations":
+        """Return the same quadratic model about the point that `step` leads to."""
+        downhill = self.information @ step
+        return replace(
+            self,
+            gradient=self.gradient - downhill,
+            cost=self.cost - 2.0 * float(self.gradient @ step) + float(step @ downhill),
+        )
+
+    def __add__(self, other: "NormalEquations") -> "NormalEquations":
+        """Pool two pieces of evidence about the same point."""
+        return NormalEquations(
+            information=self.information + other.information,
+            gradient=self.gradient + other.gradient,
+            cost=self.cost + other.cost,
+            freedom=self.freedom + other.freedom,
+        )
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Evidence:
+    """What one stretch says at one point: the normal equations and the residual behind them.
+
+    Attributes
+    ----------
+    stretch : Stretch
+    values, simulated : ndarray, shape (unknowns,)
+        The point, and the one at which the stretch was simulated: another where the evidence was moved.
+    equations : NormalEquations
+    linearisation : Linearisation
+    columns : ndarray, shape (2 * bins, 3 + unknowns)
+        Transforms of free vibrations, residual and derivatives where simulated, not weighted.
+    residual : ndarray, shape (2 * bins,)
+        Transform of the residual, free vibrations taken off, not weighted.
+    derivatives : ndarray, shape (2 * bins, unknowns)
+        The same of the prediction's derivatives.
+    std : ndarray, shape (2 * bins,)
+        Standard deviation that the noise floor gave the rows.
+    free_leverage : ndarray, shape (2 * bins,)
+        Part of the noise in every row that the fit of the free vibrations takes away.
+    """
+
+    stretch: Stretch
+    values: FloatArray
+    simulated: FloatArray
+    equations: NormalEquations
+    linearisation: Linearisation
+    columns: FloatArray
+    residual: FloatArray
+    derivatives: FloatArray
+    std: FloatArray
+    free_leverage: FloatArray
+
+    def leverage(self, covariance: FloatArray) -> FloatArray:
+        """Part of the noise's variance in every row that the fit takes away, shape (2 * bins,).
+
+        It is large at the lines, which the unknowns follow, and next to nothing elsewhere.
+
+        Parameters
+        ----------
+        covariance : ndarray, shape (unknowns, unknowns)
+            Of the unknowns fitted, this stretch included; 0 for the others.
+        """
+        rows = self.derivatives / self.std[:, None]
+        return np.asarray(self.free_leverage + np.einsum("ij,ij->i", rows @ covariance, rows))
+
+    def moved(self, step: FloatArray) -> "Evidence":
+        """Return what the stretch says at a point a small `step` of the unknowns on, to first order of the step."""
+        return replace(
+            self,
+            values=self.values + step,
+            equations=self.equations.moved(step),
+            linearisation=self.linearisation.moved(self.stretch, step),
+            residual=self.residual - self.derivatives @ step,
+        )
+
+    def weighted(self, floor: NoiseFloor) -> "Evidence":
+        """Return what the stretch says under another noise floor; nothing is simulated for that."""
+        return _weighted(self.stretch, self.linearisation, self.columns, floor, self.values, self.simulated)
+
+
+def examine(stretch: Stretch, predictor: Predictor, values: FloatArray, floor: NoiseFloor) -> Evidence:
+    """Linearise a stretch at `values` and weight it by the noise floor."""
+    line = predictor.linearise(stretch, values)
+    columns = stretch.transform(np.concatenate([line.free, line.residual[:, None], line.jacobian], axis=1))
+    return _weighted(stretch, line, columns, floor, values, values)
+
+
+def _weighted(
+    stretch: Stretch,
+    line: Linearisation,
+    columns: FloatArray,
+    floor: NoiseFloor,
+    values: FloatArray,
+    simulated: FloatArray,
+) -> Evidence:
+    frequencies = stretch.frequencies
+    std = np.tile(floor.sample_std(frequencies, stretch.period), 2)
+    weighted = columns / std[:, None]
+    if values is not simulated:
+        weighted[:, 2] -= weighted[:, 3:] @ (values - simulated)
+    free, _ = np.linalg.qr(weighted[:, :2])
+    white = weighted[:, 2:]
+    white -= free @ (free.T @ white)
+    gram = white.T @ white
+    return Evidence(
+        stretch=stretch,
+        values=values,
+        simulated=simulated,
+        equations=NormalEquations(
+            information=gram[1:, 1:],
+            gradient=gram[1:, 0],
+            cost=float(gram[0, 0]),
+            freedom=2.0 * frequencies.size * stretch.fill - 2.0,
+        ),
+        linearisation=line,
+        columns=columns,
+        residual=white[:, 0] * std,
+        derivatives=white[:, 1:] * std[:, None],
+        std=std,
+        free_leverage=np.einsum("ij,ij->i", free, free),
+    )

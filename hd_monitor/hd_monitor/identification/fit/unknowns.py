@@ -1,0 +1,119 @@
+"""The unknowns of the estimation, and their places in one vector."""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...arrays import BoolArray, ComplexArray, FloatArray
+from ...model.parameters import Dynamics
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Unknowns:
+    """Layout of the vector of unknowns.
+
+    In this order: real parts of the circular spline's β phasors (one a harmonic), their imaginary parts, the same of
+    the flexspline, real parts of the load phasors (one an order; in units of the reference torque), their imaginary
+    parts; then the logarithms of natural frequency, damping ratio and torque relative to the given ones, the time [s]
+    by which the motion's stamps lag behind the vibration's, and the part of the inertia whose own acceleration winds
+    up the reducer beside the known torque.
+
+    Attributes
+    ----------
+    harmonics : int
+        Line pairs, k = 1 … harmonics.
+    load_orders : tuple of int
+        Cycles per output revolution of the unknown load fluctuations.
+    """
+
+    harmonics: int
+    load_orders: tuple[int, ...]
+
+    @property
+    def circular_spline(self) -> slice:
+        """Place of the circular spline's β."""
+        return slice(0, 2 * self.harmonics)
+
+    @property
+    def flexspline(self) -> slice:
+        """Place of the flexspline's β."""
+        return slice(2 * self.harmonics, 4 * self.harmonics)
+
+    @property
+    def stiffness(self) -> slice:
+        """Place of all β."""
+        return slice(0, 4 * self.harmonics)
+
+    @property
+    def load(self) -> slice:
+        """Place of the load phasors."""
+        return slice(4 * self.harmonics, 4 * self.harmonics + 2 * len(self.load_orders))
+
+    @property
+    def frequency(self) -> int:
+        """Place of ln(fn / given fn)."""
+        return 4 * self.harmonics + 2 * len(self.load_orders)
+
+    @property
+    def damping(self) -> int:
+        """Place of ln(ζ / given ζ)."""
+        return self.frequency + 1
+
+    @property
+    def torque(self) -> int:
+        """Place of ln(torque / given torque)."""
+        return self.frequency + 2
+
+    @property
+    def delay(self) -> int:
+        """Place of the delay [s]."""
+        return self.frequency + 3
+
+    @property
+    def inertia(self) -> int:
+        """Place of the part of the inertia that the known torque leaves out."""
+        return self.frequency + 4
+
+    @property
+    def size(self) -> int:
+        """Number of unknowns."""
+        return self.frequency + 5
+
+    def zero(self) -> FloatArray:
+        """Return the vector of a healthy reducer with all that is given taken as right."""
+        return np.zeros(self.size)
+
+    def mask(self, *places: int | slice) -> BoolArray:
+        """Mark some places, shape (unknowns,)."""
+        mask = np.zeros(self.size, dtype=np.bool_)
+        for place in places:
+            mask[place] = True
+        return mask
+
+    def given_std(self) -> FloatArray:
+        """Standard deviations of the unknowns before any data, shape (unknowns,)."""
+        std = np.empty(self.size)
+        std[self.stiffness] = 0.3
+        std[self.load] = 2.0
+        std[self.frequency] = 0.1
+        std[self.damping] = 0.5
+        std[self.torque] = 1.5
+        std[self.delay] = 0.01
+        std[self.inertia] = 0.7
+        return std
+
+    def phasors(self, values: FloatArray, part: slice) -> ComplexArray:
+        """Complex phasors of one of the parts, shape (harmonics,) or (load orders,)."""
+        real, imaginary = np.split(values[part], 2)
+        return np.asarray(real + 1j * imaginary)
+
+    def dynamics(self, given: Dynamics, values: FloatArray) -> Dynamics:
+        """Return the given dynamics with natural frequency and damping moved as `values` say."""
+        if values[self.frequency] == 0.0 and values[self.damping] == 0.0:
+            return given
+        return replace(
+            given,
+            natural_frequency=given.natural_frequency * math.exp(values[self.frequency]),
+            damping_ratio=given.damping_ratio * math.exp(values[self.damping]),
+        )

@@ -1,0 +1,121 @@
+"""Conditioning of a stretch of raw samples: outliers left out, and a rate higher than needed reduced."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import signal
+from scipy.interpolate import CubicSpline
+from scipy.ndimage import median_filter
+
+from ...arrays import BoolArray, FloatArray
+
+OUTLIER = 8.0
+"""Robust standard deviations by which a sample must stick out of its neighbours to be left out."""
+
+RATE_OVER_LINE = 2.8
+RATE_OVER_NATURAL = 6.4
+"""Sampling rate that is enough, over the highest line's and over the natural frequency."""
+
+PASS_BAND = 0.36
+"""Part of the reduced sampling rate up to which the anti-aliasing filter passes everything (to 0.1 %)."""
+
+_TAPS = 32  # of the anti-aliasing filter, per factor of reduction
+_LOSS, _LOSS_DEAR = 0.04, 0.12  # part of the samples that reducing the rate may cost, by a little or much
+_WORTH_MUCH = 4  # factor of reduction
+_BRIDGED = 2  # samples missing in a row that interpolation replaces before the rate is reduced
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Conditioned:
+    """Samples fit for use.
+
+    Attributes
+    ----------
+    values : ndarray, shape (samples,)
+        0 where left out.
+    used : ndarray of bool, shape (samples,)
+    factor : int
+        Raw sample periods per sample.
+    first : int
+        Number of the raw sample at which the first one stands.
+    highest_frequency : float
+        [Hz] up to which the values can be trusted.
+    outliers : int
+        Raw samples left out because they stuck out of their neighbours.
+    """
+
+    values: FloatArray
+    used: BoolArray
+    factor: int
+    first: int
+    highest_frequency: float
+    outliers: int
+
+
+def condition(raw: FloatArray, period: float, line: float, natural: float) -> Conditioned:
+    """Leave out outliers, and reduce the sampling rate where the signal needs much less.
+
+    Parameters
+    ----------
+    raw : ndarray, shape (raw samples,)
+        NaN where missing.
+    period : float
+        Raw sample period [s].
+    line, natural : float
+        Highest line frequency and highest natural frequency of interest [Hz].
+    """
+    used = np.isfinite(raw)
+    spikes = np.zeros(raw.shape, dtype=np.bool_)
+    spikes[used] = outliers(raw[used])
+    used &= ~spikes
+    count = int(spikes.sum())
+    factor = math.floor(1.0 / (period * max(RATE_OVER_LINE * line, RATE_OVER_NATURAL * natural)))
+    half = _TAPS // 2 * factor
+    lost = 2.0 * half / raw.size  # the filter has no output at the ends
+    if factor < 2 or lost > (_LOSS_DEAR if factor >= _WORTH_MUCH else _LOSS) or np.count_nonzero(used) < 8:
+        values = np.where(used, raw, 0.0)
+        return Conditioned(values=values, used=used, factor=1, first=0, highest_frequency=0.5 / period, outliers=count)
+    taps = signal.firwin(2 * half + 1, 0.43 * 2.0 / factor, window=("kaiser", 6.0))
+    values = np.convolve(_bridge(raw, used), taps, mode="valid")[::factor]
+    hole = _in_hole(used)
+    near = np.convolve(hole, np.ones(2 * factor + 1), mode="same")[half : raw.size - half : factor] < 0.5
+    return Conditioned(
+        values=np.where(near, values, 0.0),
+        used=near,
+        factor=factor,
+        first=half,
+        highest_frequency=PASS_BAND / (factor * period),
+        outliers=count,
+    )
+
+
+def _bridge(raw: FloatArray, used: BoolArray) -> FloatArray:
+    """Fill in missing samples by cubic interpolation, those at the ends by the nearest."""
+    if used.all():
+        return raw
+    places = np.flatnonzero(used)
+    filled = raw.copy()
+    filled[~used] = CubicSpline(places, raw[used])(np.clip(np.flatnonzero(~used), places[0], places[-1]))
+    return filled
+
+
+def _in_hole(used: BoolArray) -> BoolArray:
+    """Mark missing samples that are more than `_BRIDGED` in a row."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[True], used, [True]]).astype(np.int8)))
+    hole = np.zeros(used.shape, dtype=np.bool_)
+    for first, last in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
+        hole[first:last] = last - first > _BRIDGED
+    return hole
+
+
+def outliers(values: FloatArray) -> BoolArray:
+    """Mark samples that stick out of their neighbours: more than any smooth vibration does, however it swells."""
+    if values.size < 16:
+        return np.zeros(values.shape, dtype=np.bool_)
+    difference = np.abs(values - median_filter(values, 5, mode="nearest"))
+    limit = OUTLIER * 1.4826 * float(np.median(difference))
+    suspect = difference > limit
+    if not suspect.any():
+        return suspect
+    return np.asarray(suspect & (difference > 2.0 * median_filter(np.abs(values), 9, mode="nearest")))

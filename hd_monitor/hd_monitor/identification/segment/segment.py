@@ -1,0 +1,245 @@
+"""A contiguous stretch of vibration made ready for fitting: its samples, and the motion between them."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy import fft
+
+from ...acquisition.record import Record
+from ...arrays import BoolArray, FloatArray
+from ...errors import ParameterError
+from ...orders.orthonormal import orthonormal
+from ...reducer import Reducer
+from .decimation import condition
+from .path import Motion, Path, paths_along
+from .tones import foreign_tones, tone_columns
+from .torque import own_acceleration, smooth_torque
+
+FREQUENCY_MARGIN = 1.25
+"""Factor by which the natural frequency may turn out higher than given."""
+
+MOST_SUBSTEPS = 16
+"""Integration steps per sample above which a stretch is refused."""
+
+LARGEST_PHASE_STEP = 1.0
+"""Phase [rad] of the natural oscillation and of the fastest stiffness harmonic that an integration step may cover."""
+
+_SIDE_ORDERS = 4.0  # orders above the highest line at which load fluctuations may still put side lines
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Stretch:
+    """A contiguous stretch on a uniform grid.
+
+    Attributes
+    ----------
+    start, period : float
+        Time of the first sample and sample period [s].
+    acceleration : ndarray, shape (samples,)
+        θ'' [rad/s²]; 0 where left out.
+    used : ndarray of bool, shape (samples,)
+        Which samples count.
+    angle, speed : ndarray, shape (samples,)
+        Output angle [rad] and speed [rad/s].
+    substeps : int
+        Integration steps per sample period.
+    at_steps : Path
+        The motion at the integration grid's points, shape (steps + 1,).
+    at_gauss : Path
+        The motion at the two Gauss points of every step, shape (2, steps).
+    slow : ndarray, shape (samples, terms)
+        Orthonormal directions of slow motion (0 where samples are left out), no part of the torsional vibration.
+    highest_frequency : float
+        Frequency [Hz] up to which the samples are to be trusted.
+    raw_highest : float
+        Half the sensor's sampling rate [Hz].
+    raw_samples : int
+        Samples of the sensor behind it.
+    outliers : int
+        Of these, left out because they stuck out of their neighbours.
+    """
+
+    start: float
+    period: float
+    acceleration: FloatArray
+    used: BoolArray
+    angle: FloatArray
+    speed: FloatArray
+    substeps: int
+    at_steps: Path
+    at_gauss: Path
+    slow: FloatArray
+    highest_frequency: float
+    raw_highest: float
+    raw_samples: int
+    outliers: int
+
+    def __len__(self) -> int:
+        """Return the number of samples, those left out included."""
+        return int(self.acceleration.size)
+
+    def mirrored(self) -> "Stretch":
+        """Return the stretch as a sensor mounted the other way round would have recorded it."""
+        return replace(self, acceleration=-self.acceleration)
+
+    @property
+    def duration(self) -> float:
+        """Length [s]."""
+        return len(self) * self.period
+
+    @property
+    def travel(self) -> float:
+        """Length of the way [rad] that the output went, there and back counted twice."""
+        return float(np.abs(np.diff(self.angle)).sum())
+
+    @property
+    def frequencies(self) -> FloatArray:
+        """Frequencies [Hz] of the rows of :meth:`transform`, shape (bins,)."""
+        length, bins = self._bins()
+        return np.asarray(fft.rfftfreq(length, self.period)[bins])
+
+    @property
+    def fill(self) -> float:
+        """Expected square of a row of :meth:`transform` of white noise of unit variance."""
+        return int(self.used.sum()) / self._bins()[0]
+
+    def transform(self, signals: FloatArray) -> FloatArray:
+        """Spectra of signals, shape (samples, columns), between slow motion and the highest frequency.
+
+        Real parts of all bins over their imaginary parts, shape (2 * bins, columns).
+        """
+        x = signals * self.used[:, None]
+        x -= self.slow @ (self.slow.T @ x)
+        length, bins = self._bins()
+        spectrum = fft.rfft(x, length, axis=0)[bins] * math.sqrt(2.0 / length)
+        return np.concatenate([spectrum.real, spectrum.imag])
+
+    def _bins(self) -> tuple[int, slice]:
+        """Length of the Fourier transform, and which of its bins count."""
+        length = fft.next_fast_len(len(self), real=True)
+        slow = _slow_degree(self.duration) / (2.0 * self.duration)
+        width = 1.0 / (length * self.period)
+        return length, slice(math.ceil(slow / width), math.floor(self.highest_frequency / width * (1.0 + 1e-9)) + 1)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StretchBuilder:
+    """Makes stretches of records.
+
+    Attributes
+    ----------
+    reducer : Reducer
+    harmonics : int
+        Line pairs.
+    load_orders : tuple of int
+        Cycles per output revolution of unknown load fluctuations.
+    natural_frequency : float
+        [Hz]; together with the lines' frequencies it sets the sampling rate that is needed and the integration step.
+    inertial : bool
+        Whether the sensor also feels gravity, as an IMU does.
+    keep_tones : bool
+        Whether foreign tones are left in.
+    """
+
+    reducer: Reducer
+    harmonics: int
+    load_orders: tuple[int, ...]
+    natural_frequency: float
+    inertial: bool = False
+    keep_tones: bool = False
+
+    def build(self, records: Sequence[Record], torque: float | None) -> Stretch:
+        """Join successive records, each of which continues the one before it.
+
+        Parameters
+        ----------
+        records : sequence of Record
+        torque : float or None
+            Torque [N·m] to be used instead of the records'; None for the records'.
+
+        Raises
+        ------
+        ParameterError
+            If the sampling rate is far too low for the lines and the natural frequency.
+        """
+        period = _common_period(records)
+        angle, speed, measured, raw = (
+            np.concatenate([getattr(record, name) for record in records])
+            for name in ("angle", "speed", "torque", "acceleration")
+        )
+        top_speed = float(np.abs(speed).max())
+        line = (self.harmonics * self.reducer.output_orders.flexspline + _SIDE_ORDERS) * top_speed / math.tau
+        signal = condition(raw, period, line, FREQUENCY_MARGIN * self.natural_frequency)
+        places = signal.first + signal.factor * np.arange(signal.values.size)
+        angle, speed, measured = angle[places], speed[places], measured[places]
+        step = period * signal.factor
+        steps = self._substeps(line, step)
+        if steps > MOST_SUBSTEPS:
+            raise ParameterError(
+                f"at {top_speed:.3g} rad/s and {1.0 / step:.4g} samples a second the lines and the natural frequency, "
+                f"{self.natural_frequency:g} Hz, ask for {steps} integration steps a sample, above {MOST_SUBSTEPS}: "
+                "such a signal shows nothing of them; sample faster"
+            )
+        own = own_acceleration(speed, step)
+        known = np.full(angle.size, torque) if torque is not None else smooth_torque(measured, angle, speed, own, step)
+        motion = Motion(angle, speed, own, known, step)
+        at_steps, at_gauss = paths_along(motion, self.reducer, self.harmonics, self.load_orders, steps)
+        return Stretch(
+            start=records[0].start + signal.first * period,
+            period=step,
+            acceleration=signal.values,
+            used=signal.used,
+            angle=angle,
+            speed=speed,
+            substeps=steps,
+            at_steps=at_steps,
+            at_gauss=at_gauss,
+            slow=self._slow(motion, signal.values, signal.used),
+            highest_frequency=signal.highest_frequency,
+            raw_highest=0.5 / period,
+            raw_samples=int(np.isfinite(raw).sum()),
+            outliers=signal.outliers,
+        )
+
+    def _substeps(self, line: float, step: float) -> int:
+        fastest = math.tau * max(FREQUENCY_MARGIN * self.natural_frequency, 0.7 * line)
+        return max(1, math.ceil(fastest * step / LARGEST_PHASE_STEP))
+
+    def _slow(self, motion: Motion, values: FloatArray, used: BoolArray) -> FloatArray:
+        """Directions below about 1 Hz, the joint's own acceleration, foreign tones; for an inertial sensor gravity."""
+        size = motion.angle.size
+        degree = _slow_degree(size * motion.step)
+        parts = [np.polynomial.legendre.legvander(np.linspace(-1.0, 1.0, size), degree)]
+        if float(np.ptp(motion.acceleration)) > 0.0:
+            parts.append(motion.acceleration[:, None])
+        if self.inertial:
+            parts.append(np.stack([np.cos(motion.angle), np.sin(motion.angle)], axis=1))
+        if not self.keep_tones:
+            tones = foreign_tones(values, motion.step, *self._own_lines(motion))
+            if tones.size:
+                parts.append(tone_columns(tones, size, motion.step))
+        return orthonormal(np.concatenate(parts, axis=1) * used[:, None])
+
+    def _own_lines(self, motion: Motion) -> tuple[FloatArray, float]:
+        """Frequencies [Hz] between which every group of lines is, and how far its side lines reach beyond."""
+        speed = np.abs(motion.speed)
+        low, high = float(speed.min()) / math.tau, float(speed.max()) / math.tau
+        lowest, highest = self.reducer.output_orders
+        groups = range(1, 2 * self.harmonics + 3)  # the coupling of the splines makes lines beyond the harmonics, too
+        own = [(k * lowest * low, k * highest * high) for k in groups]
+        return np.asarray(own), _SIDE_ORDERS * high
+
+
+def _slow_degree(duration: float) -> int:
+    """Degree of the polynomial in time [s] that takes off what is slower than about 1 Hz."""
+    return 3 + math.ceil(2.0 * duration)
+
+
+def _common_period(records: Sequence[Record]) -> float:
+    """Mean sample period of successive records, each of which has its own estimate of it."""
+    first, last = records[0], records[-1]
+    if len(records) == 1:
+        return first.period
+    return (last.start - first.start) / sum(len(record) for record in records[:-1])

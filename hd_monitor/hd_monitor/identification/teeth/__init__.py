@@ -1,0 +1,1 @@
+"""Whether other tooth numbers than those given explain the motion better."""

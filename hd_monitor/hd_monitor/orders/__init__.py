@@ -1,0 +1,1 @@
+"""Lines at known orders of a joint's rotation: segments, whitening, regression, spectra, RMS by speed."""

@@ -1,0 +1,78 @@
+"""Line amplitudes of the newest stretches, by known-order regression in the joint's angle."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..identification.fit.noise import NoiseFloor
+from ..identification.result import LineEstimate
+from ..identification.segment.path import powers
+from ..identification.segment.segment import Stretch
+from ..reducer import LinePair, Reducer
+
+NEWEST = 4.5
+"""Motion [s] that the amplitudes stand for."""
+
+_SIDE_TRAVEL = 0.55 * math.tau  # rad of travel from which the lines between and beside a pair are fitted too
+_DEPENDENT = 1e-8  # reciprocal condition below which the travel does not tell the lines
+
+
+def measure_lines(
+    recent: Sequence[Stretch], reducer: Reducer, harmonics: int, floor: NoiseFloor
+) -> tuple[LineEstimate, ...]:
+    """Amplitudes of θ'' [rad/s²] of the line pairs k = 1 … harmonics over the newest stretches.
+
+    Pairs above what the sampling rate shows are left out, and all of them where the travel does not tell them apart.
+    Where it allows that, the lines that load fluctuations and the coupling of the two splines put between and beside
+    a pair are fitted along, so that they are not mistaken for it.
+
+    Parameters
+    ----------
+    recent : sequence of Stretch
+        In the order of time.
+    reducer : Reducer
+    harmonics : int
+    floor : NoiseFloor
+        From which the standard deviations follow.
+    """
+    newest = [recent[-1]]
+    for stretch in recent[-2::-1]:
+        if sum(s.duration for s in newest) + stretch.duration > NEWEST:
+            break
+        newest.append(stretch)
+    angle = np.concatenate([s.angle[s.used] for s in newest])
+    values = np.concatenate([(s.acceleration - s.slow @ (s.slow.T @ s.acceleration))[s.used] for s in newest])
+    top_speed = max(float(np.abs(s.speed).max()) for s in newest)
+    mean_speed = float(np.mean([np.abs(s.speed).mean() for s in newest]))
+    lowest_order, highest_order = reducer.output_orders
+    seen = math.floor(min(s.highest_frequency for s in newest) * math.tau / (highest_order * top_speed + 1e-9))
+    pairs = range(1, min(harmonics, seen) + 1)
+    if not pairs:
+        return ()
+    gap = highest_order - lowest_order
+    places = [place for k in pairs for place in ((k, 0), (k, k))]  # (k, m): k times the lowest order, m gaps above
+    if float(np.ptp(angle)) > _SIDE_TRAVEL:
+        places += [(k, m) for k in pairs for m in range(-1, k + 2) if m not in (0, k)]
+    orders = [k * lowest_order + m * gap for k, m in places]
+    base, side = (powers(np.exp(1j * order * angle), len(pairs) + 1) for order in (lowest_order, gap))
+    phase = np.stack([base[k] * (side[m] if m >= 0 else side[-m].conj()) for k, m in places])
+    columns = np.concatenate([phase.real, -phase.imag])
+    gram = columns @ columns.T
+    squares = np.linalg.eigvalsh(gram)
+    if squares[0] < _DEPENDENT * squares[-1]:
+        return ()
+    inverse = np.linalg.inv(gram)
+    solution = inverse @ (columns @ values)
+    phasors = solution[: len(orders)] + 1j * solution[len(orders) :]
+    own = inverse.diagonal()[: len(orders)]
+    noise = floor.sample_std(np.maximum(np.asarray(orders) * mean_speed / math.tau, 1.0), newest[0].period)
+    amplitude, std = np.abs(phasors), noise * np.sqrt(own)
+    return tuple(
+        LineEstimate(
+            k=k,
+            amplitude=LinePair(float(amplitude[2 * k - 2]), float(amplitude[2 * k - 1])),
+            std=LinePair(float(std[2 * k - 2]), float(std[2 * k - 1])),
+        )
+        for k in pairs
+    )

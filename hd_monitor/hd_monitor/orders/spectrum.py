@@ -1,0 +1,142 @@
+"""Spectrum of a vibration over orders, cycles per output revolution, summed up cheaply as the joint turns."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy import fft
+
+from ..arrays import FloatArray
+from ..identification.segment.segment import Stretch
+from ..identification.segment.torque import own_acceleration
+from ..model.parameters import Dynamics
+from .orthonormal import orthonormal
+
+TURNS = 2
+"""Output revolutions after which the sums start over: half orders, where no line can be, tell lines from tones."""
+
+PER_TURN = 2048
+"""Angle bins per output revolution."""
+
+HIGHEST_ORDER = 800
+"""Order up to which the bins are fine enough: they weaken it by a fifth."""
+
+_SLOW = 4.0  # polynomial terms per second, which follow what is slower than about 2 Hz
+
+
+def _nothing() -> FloatArray:
+    return np.zeros(TURNS * PER_TURN)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class OrderSpectrum:
+    """Sums of a signal by the output angle, from which every order's line follows by one Fourier transform.
+
+    Attributes
+    ----------
+    sums : ndarray, shape (bins,)
+        Sums of the samples [rad/s²] that fall into each bin of the angle.
+    counts : ndarray, shape (bins,)
+        Numbers of samples.
+    power : float
+        Sum of squares of the samples [(rad/s²)²].
+    lowest, highest : float
+        Range of the output angle [rad] looked at.
+    """
+
+    sums: FloatArray = field(default_factory=_nothing)
+    counts: FloatArray = field(default_factory=_nothing)
+    power: float = 0.0
+    lowest: float = math.inf
+    highest: float = -math.inf
+
+    def faded(self, keep: float) -> "OrderSpectrum":
+        """Return the sums of data that count `keep` times."""
+        return OrderSpectrum(
+            sums=keep * self.sums,
+            counts=keep * self.counts,
+            power=keep * self.power,
+            lowest=self.lowest,
+            highest=self.highest,
+        )
+
+    @property
+    def turns(self) -> float:
+        """Range of the output angle in revolutions: lines stand apart by Fourier means by one over it."""
+        return max(self.highest - self.lowest, 0.0) / math.tau
+
+    @property
+    def amplitudes(self) -> FloatArray:
+        """Amplitudes [rad/s²] at the orders 0, 1, 2 …; half orders are left out."""
+        return np.abs(np.fft.rfft(self.sums))[::TURNS][: HIGHEST_ORDER + 1] * (2.0 / max(float(self.counts.sum()), 1.0))
+
+    def products(self, orders: FloatArray) -> FloatArray:
+        """Inner products of lines of unit amplitude, cosines then negative sines, and last of the signal.
+
+        Parameters
+        ----------
+        orders : ndarray, shape (lines,)
+            Whole multiples of 1 / `TURNS`.
+
+        Returns
+        -------
+        ndarray, shape (2 * lines + 1, 2 * lines + 1)
+        """
+        place = np.rint(orders * TURNS).astype(np.intp)
+        weight, signal = np.fft.fft(self.counts).conj(), np.fft.fft(self.sums).conj()  # sums of exp(+i order angle)
+        size = weight.size
+        apart, together = weight[np.subtract.outer(place, place) % size], weight[np.add.outer(place, place) % size]
+        cosines, sines = 0.5 * (apart + together).real, 0.5 * (apart - together).real
+        mixed = -0.5 * (together - apart).imag  # of cos(a) with -sin(b), b the second index
+        own = signal[place]
+        column = np.concatenate([own.real, -own.imag])
+        lines = np.block([[cosines, mixed], [mixed.T, sines]])
+        return np.block([[lines, column[:, None]], [column[None, :], np.array([[self.power]])]])
+
+
+def with_stretch(
+    spectra: Sequence[OrderSpectrum], stretch: Stretch, signals: Sequence[FloatArray], dynamics: Dynamics
+) -> tuple[OrderSpectrum, ...]:
+    """Add signals [rad/s²] along a stretch, one to each spectrum.
+
+    They pass a filter that turns back the resonator's phase: past the resonance a line's phase is reversed, so that
+    without it the two sides of a speed ramp would cancel.
+    """
+    used = stretch.used
+    place = np.floor(np.mod(stretch.angle[used] / math.tau, TURNS) * PER_TURN).astype(np.intp) % (TURNS * PER_TURN)
+    counts = np.bincount(place, minlength=TURNS * PER_TURN)
+    lowest, highest = float(stretch.angle.min()), float(stretch.angle.max())
+    added = _equalised(_levelled(stretch, np.stack(signals)), stretch.period, dynamics)[:, used]
+    return tuple(
+        OrderSpectrum(
+            sums=spectrum.sums + np.bincount(place, values, spectrum.sums.size),
+            counts=spectrum.counts + counts,
+            power=spectrum.power + float(values @ values),
+            lowest=min(spectrum.lowest, lowest),
+            highest=max(spectrum.highest, highest),
+        )
+        for spectrum, values in zip(spectra, added, strict=True)
+    )
+
+
+def _levelled(stretch: Stretch, signals: FloatArray) -> FloatArray:
+    """Signals less slow motion; unlike the fit's they keep all tones: at one speed these may be other teeth's lines."""
+    degree = 3 + math.ceil(_SLOW * stretch.duration)
+    columns = np.polynomial.legendre.legvander(np.linspace(-1.0, 1.0, len(stretch)), degree)
+    own = own_acceleration(stretch.speed, stretch.period)
+    if float(np.ptp(own)) > 0.0:
+        columns = np.concatenate([columns, own[:, None]], axis=1)
+    slow, signals = orthonormal(columns * stretch.used[:, None]), signals * stretch.used
+    return np.asarray(signals - (signals @ slow) @ slow.T)
+
+
+def _equalised(signals: FloatArray, period: float, dynamics: Dynamics) -> FloatArray:
+    """Signals with the resonator's phase turned back, the magnitudes of their spectra as they were."""
+    size = signals.shape[1]
+    length = fft.next_fast_len(2 * size, real=True)
+    ratio = np.fft.rfftfreq(length, period) / dynamics.natural_frequency
+    response = -(ratio**2) / (1.0 - ratio**2 + 2j * dynamics.damping_ratio * ratio)
+    response[0] = 1.0
+    turned = np.fft.rfft(signals, length) * (response.conj() / np.abs(response))
+    return np.asarray(np.fft.irfft(turned, length)[:, :size])

@@ -1,0 +1,40 @@
+"""Runs of the sensorless identification, and what its probabilities must stand up to."""
+
+import numpy as np
+from scipy import stats
+
+from hd_monitor.acquisition.record import JointSamples
+from hd_monitor.diagnosis import Judge, Limits
+from hd_monitor.identification.sensorless.identifier import SensorlessIdentifier
+from hd_monitor.settings import JointSettings
+
+
+def settings_of(**changes):
+    return JointSettings.from_mapping(
+        {"input.source": "joint_effort"} | {k.replace("__", "."): v for k, v in changes.items()}
+    )
+
+
+def part(whole, chosen):
+    return JointSamples(
+        times=whole.times[chosen], angle=whole.angle[chosen], speed=whole.speed[chosen], effort=whole.effort[chosen]
+    )
+
+
+def identify(samples, parameters):
+    identifier = SensorlessIdentifier(parameters)
+    identifier.add(samples)
+    return identifier
+
+
+def named(identifier, parameters):
+    judge = Judge(Limits.from_settings(parameters))
+    for _ in range(3):
+        verdict = judge.judge(identifier.estimate(), "nothing yet")
+    return verdict.component
+
+
+def assert_no_more_than_chance(chances):
+    """Probabilities are what they say: as many below each level as an honest test gives in 999 runs of 1000."""
+    for level in (0.1, 0.01, 0.001):
+        assert np.count_nonzero(np.array(chances) < level) <= stats.binom.ppf(0.999, len(chances), level)
