@@ -7,7 +7,7 @@ from itertools import groupby
 import numpy as np
 import numpy.typing as npt
 
-from .acquisition.recorder import Harvest, Recorder
+from .acquisition.recorder import AssembledPeriod, Recorder
 from .acquisition.stream import StampedBuffer
 from .arrays import FloatArray
 from .assessment import Assessment
@@ -187,50 +187,50 @@ class Monitor:
         for name, samples in ((VIBRATION, vibration), (MOTION, motion)):
             if samples.stamps.size:
                 self._seen[name] = int(samples.stamps.max())
-        harvest = self._recorder.harvest(vibration, motion, self._motion.peek_first(), epoch, end)
-        if self.settings.sensorless or np.isfinite(harvest.vibration).any():
+        assembled = self._recorder.assemble(vibration, motion, self._motion.peek_first(), epoch, end)
+        if self.settings.sensorless or np.isfinite(assembled.vibration).any():
             self._useful = end
-        evidence = self._gather(harvest)
+        evidence = self._gather(assembled)
         lost = [name for name in self._needed_names() if self._is_lost(name, end)]
         if lost:
             verdict = partly_lost(lost, self._timeout / NANOSECONDS)
         elif end - self._useful >= self._timeout:
             verdict = unusable(self._recorder.last_fault, self._timeout / NANOSECONDS)
         else:
-            verdict = self._judge.judge(evidence, "" if evidence is not None else self._missing(harvest))
+            verdict = self._judge.judge(evidence, "" if evidence is not None else self._missing(assembled))
             if evidence is not None and self._recorder.torque_source == "assumed":
                 note = f"no effort was measured: the torque is taken to be {self.settings['load.torque']:g} N·m"
                 verdict = replace(verdict, reason=f"{verdict.reason}; {note}")
-        self._latest = self._pack(end, verdict, harvest)
+        self._latest = self._pack(end, verdict, assembled)
         return self._latest
 
-    def _gather(self, harvest: Harvest) -> Identification | None:
+    def _gather(self, assembled: AssembledPeriod) -> Identification | None:
         if isinstance(self._identifier, SensorlessIdentifier):
-            if len(harvest.joint_samples):
-                self._identifier.add(harvest.joint_samples)
+            if len(assembled.joint_samples):
+                self._identifier.add(assembled.joint_samples)
             return self._identifier.estimate()
-        for record in harvest.records:
+        for record in assembled.records:
             self._rms.add(record.speed * self._rpm, self._tangential(record.acceleration))
             self._steady.add(record)
             self._identifier.add(record)
-        if not harvest.records:
+        if not assembled.records:
             self._steady.interrupt()
         return self._identifier.estimate()
 
     def _is_lost(self, name: str, end: int) -> bool:
         return bool(end - self._seen.get(name, self._timeline.epoch) >= self._timeout)
 
-    def _missing(self, harvest: Harvest) -> str:
+    def _missing(self, assembled: AssembledPeriod) -> str:
         """Say why there is no evidence yet."""
         absent = [name for name in self._needed_names() if name not in self._seen]
         if absent:
             return f"No {' and no '.join(absent)} so far"
-        if not self.settings.sensorless and not harvest.records:
+        if not self.settings.sensorless and not assembled.records:
             fault = self._recorder.last_fault
             return "No vibration with known motion in the last period" + (f": {fault}" if fault else "")
-        if not self.settings.sensorless and not np.isfinite(harvest.vibration).any():
+        if not self.settings.sensorless and not np.isfinite(assembled.vibration).any():
             return f"No usable vibration sample in the last period: {self._recorder.last_fault}"
-        speed = self._speed(harvest)
+        speed = self._speed(assembled)
         if not speed >= self.settings["analysis.minimum_speed"]:
             return "The joint has not turned enough yet: the lines show in motion only"
         rate = self._recorder.rate
@@ -241,12 +241,12 @@ class Monitor:
             )
         return "Not enough motion seen yet: let the joint turn on"
 
-    def _speed(self, harvest: Harvest) -> float:
+    def _speed(self, assembled: AssembledPeriod) -> float:
         """Mean magnitude of the wave-generator speed [rpm]."""
-        if harvest.records:
-            total = sum(len(record) for record in harvest.records)
-            return sum(float(np.abs(r.speed).sum()) for r in harvest.records) / total * self._rpm
-        joint = harvest.joint_samples
+        if assembled.records:
+            total = sum(len(record) for record in assembled.records)
+            return sum(float(np.abs(r.speed).sum()) for r in assembled.records) / total * self._rpm
+        joint = assembled.joint_samples
         if len(joint) < 2:
             return math.nan
         travel = float(np.abs(np.diff(np.unwrap(joint.angle))).sum())
@@ -272,7 +272,7 @@ class Monitor:
             power = float(squares.sum())
         return math.sqrt(power / squares.size) if squares.size else math.nan
 
-    def _pack(self, stamp: int, verdict: Verdict, harvest: Harvest | None) -> Assessment:
+    def _pack(self, stamp: int, verdict: Verdict, assembled: AssembledPeriod | None) -> Assessment:
         limits = self._judge.limits
         quality = self._recorder.quality(
             out_of_order=self._vibration.late + self._vibration.disordered,
@@ -286,12 +286,12 @@ class Monitor:
             reducer=self._reducer,
             rms_curve=self._rms.curve(),
             quality=quality,
-            speed=self._speed(harvest) if harvest is not None else math.nan,
-            rms=self._level(harvest.vibration) if harvest is not None else math.nan,
+            speed=self._speed(assembled) if assembled is not None else math.nan,
+            rms=self._level(assembled.vibration) if assembled is not None else math.nan,
             travel_needed=self._reducer.travel_to_separate(1),
             warn_limit=limits.warn,
             error_limit=limits.error,
             torque_source=self._recorder.torque_source,
-            records=harvest.records if harvest is not None else (),
-            joint_samples=harvest.joint_samples if harvest is not None else None,
+            records=assembled.records if assembled is not None else (),
+            joint_samples=assembled.joint_samples if assembled is not None else None,
         )

@@ -2,6 +2,6 @@
 
 from .quality import Quality
 from .record import JointSamples, Record
-from .recorder import Harvest, Recorder
+from .recorder import AssembledPeriod, Recorder
 
-__all__ = ["Harvest", "JointSamples", "Quality", "Record", "Recorder"]
+__all__ = ["AssembledPeriod", "JointSamples", "Quality", "Record", "Recorder"]

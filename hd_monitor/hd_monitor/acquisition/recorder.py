@@ -22,8 +22,8 @@ _SHORTEST_RECORD = 8  # samples
 _STANDING = 1e-3  # rad of output travel in a period, below which a constant signal is no sign of a stuck sensor
 
 
-class Harvest(NamedTuple):
-    """What one period gave.
+class AssembledPeriod(NamedTuple):
+    """What one period's messages give together.
 
     Attributes
     ----------
@@ -93,7 +93,9 @@ class Recorder:
         """The newest complaint in words; empty if there is none."""
         return str(self._counts.get("last_fault", ""))
 
-    def harvest(self, vibration: Samples, motion: Samples, next_motion: Samples, epoch: int, end: int) -> Harvest:
+    def assemble(
+        self, vibration: Samples, motion: Samples, next_motion: Samples, epoch: int, end: int
+    ) -> AssembledPeriod:
         """Join the samples of one period.
 
         Parameters
@@ -112,7 +114,7 @@ class Recorder:
         turning = angle.size > 0 and float(angle.max() - angle.min()) > _STANDING
         records, values = self._vibration(vibration, epoch, turning)
         self._track.forget((end - epoch) * _NS)
-        return Harvest(records, joint_samples, values)
+        return AssembledPeriod(records, joint_samples, values)
 
     def _motion(self, motion: Samples, following: Samples, epoch: int) -> JointSamples:
         stamps, rows = motion

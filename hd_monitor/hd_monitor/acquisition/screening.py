@@ -7,6 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..arrays import BoolArray, FloatArray
+from ..robust import PER_MEDIAN, robust_std
 
 Places = npt.NDArray[np.intp]
 
@@ -87,9 +88,9 @@ def _spikes(values: FloatArray) -> Places:
     if known.size < 16:
         return _NOWHERE
     # Where most are not far below the largest, the median is not either: counting them is quicker than the median
-    if 2 * int(np.count_nonzero(known >= largest / (_SPIKE * 1.4826))) > known.size + 1:
+    if 2 * int(np.count_nonzero(known >= largest / (_SPIKE * PER_MEDIAN))) > known.size + 1:
         return _NOWHERE
-    limit = _SPIKE * 1.4826 * float(np.median(known))
+    limit = _SPIKE * robust_std(known)
     if limit == 0.0 or not (known > limit).any():
         return _NOWHERE
     # the neighbours of a spike bend too, half as much: only the local maximum is the spike
@@ -105,4 +106,4 @@ def _sticks_out(curvature: FloatArray, place: int) -> bool:
         [curvature[max(0, place - _AROUND) : max(0, place - 1)], curvature[place + 2 : place + 1 + _AROUND]]
     )
     around = around[np.isfinite(around)]
-    return not around.size or bool(curvature[place] > _SPIKE * 1.4826 * float(np.median(around)))
+    return not around.size or bool(curvature[place] > _SPIKE * robust_std(around))
