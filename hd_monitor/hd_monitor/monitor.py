@@ -19,7 +19,7 @@ from .identification.identifier import Identifier
 from .identification.result import Identification
 from .identification.sensorless.identifier import SensorlessIdentifier
 from .orders.rms_curve import RmsAccumulator
-from .orders.steady import SteadyStretch
+from .orders.steady import SteadySegment
 from .settings import JointSettings
 from .timeline import Timeline, Window
 
@@ -81,7 +81,7 @@ class Monitor:
     def _begin_evidence(self, identifier: Identifier | SensorlessIdentifier | None = None) -> None:
         settings = self.settings
         self._rms = RmsAccumulator(settings["analysis.rms_bin_width"])
-        self._steady = SteadyStretch(self._reducer, settings["analysis.minimum_speed"])
+        self._steady = SteadySegment(self._reducer, settings["analysis.minimum_speed"])
         self._identifier = identifier or (
             SensorlessIdentifier(settings) if settings.sensorless else Identifier(settings)
         )

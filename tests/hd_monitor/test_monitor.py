@@ -9,7 +9,7 @@ from tests.hd_monitor.monitored import BLOCK, EPOCH, SETTINGS, UNITS, Recording,
 from hd_monitor.assessment import Assessment
 from hd_monitor.diagnosis.status import Status, status_of
 from hd_monitor.diagnosis.verdict import Component, Level
-from hd_monitor.identification.identifier import LONGEST_PERIOD, LONGEST_STRETCH
+from hd_monitor.identification.identifier import LONGEST_PERIOD, LONGEST_SEGMENT
 from hd_monitor.monitor import Monitor
 from hd_monitor.settings import JointSettings
 
@@ -36,7 +36,7 @@ def test_a_defect_that_appears_at_once_is_noticed_at_the_next_look() -> None:
     monitor.add_motion(worn.joint_stamps + later, worn.position, worn.velocity, worn.effort)
     monitor.add_vibration(worn.stamps + later, worn.values)
     said = [(a.stamp - EPOCH - later, a.verdict.component) for a in monitor.advance()]
-    look = round((LONGEST_PERIOD + 2.0 * LONGEST_STRETCH) * 1e9)
+    look = round((LONGEST_PERIOD + 2.0 * LONGEST_SEGMENT) * 1e9)
     assert Component.NONE not in {component for after, component in said if after > look}
     assert Component.CIRCULAR_SPLINE not in {component for _, component in said}
     assert {component for after, component in said if after > 2 * look} == {Component.FLEXSPLINE}

@@ -72,7 +72,7 @@ def status_of(assessment: "Assessment", joint: str, settings: JointSettings) -> 
         ("natural frequency std (Hz)", _number(found.natural_frequency_std if found else nan, 2)),
         ("damping ratio", _number(found.damping_ratio if found else nan, 4)),
         ("load fluctuation (N*m)", _number(found.load_fluctuation if found else nan)),
-        ("unstable from (rpm)", _speed(found.instability_speed if found else nan)),
+        ("unstable from (rpm)", _speed(found.critical_speed if found else nan)),
         ("torque source", assessment.torque_source),
         ("samples", str(quality.samples)),
         ("samples used", str(found.samples if found else 0)),

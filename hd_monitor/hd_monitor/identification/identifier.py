@@ -10,14 +10,14 @@ from .result import Identification
 from .segment.assembly import Collector
 from .with_sensor.estimation import Estimation
 
-CRUISE_STRETCH, SHORTEST_STRETCH = 2.0, 1.0
-"""Length [s] of the stretches looked at once the indexes are known well enough, and once they are known far better."""
+CRUISE_SEGMENT, SHORTEST_SEGMENT = 2.0, 1.0
+"""Length [s] of the segments looked at once the indexes are known well enough, and once they are known far better."""
 
 CRUISE_PERIOD, LONGEST_PERIOD = 32.0, 64.0
-"""Time [s] from one such stretch to the next where the indexes are known just well enough, and where far better."""
+"""Time [s] from one such segment to the next where the indexes are known just well enough, and where far better."""
 
-LONGEST_STRETCH = 4.0
-"""Length [s] to which stretches grow while evidence is collected."""
+LONGEST_SEGMENT = 4.0
+"""Length [s] to which segments grow while evidence is collected."""
 
 
 class Identifier:
@@ -56,7 +56,7 @@ class Identifier:
     def add(self, record: Record) -> None:
         """Take the next record."""
         if self._skip > 0.0:
-            # The indexes are known well: what lies between the stretches looked at makes the evidence older, no more
+            # The indexes are known well: what lies between the segments looked at makes the evidence older, no more
             if float(np.abs(record.speed).max(initial=0.0)) >= self._minimum_speed:
                 self._skip -= len(record) * record.period
                 self._passed += len(record) * record.period
@@ -64,20 +64,20 @@ class Identifier:
         if self._passed:
             self._estimation.age(self._passed)
             self._passed = 0.0
-        for stretch in self._collector.add(record, self._stretch_length):
-            self._estimation.take(stretch)
+        for segment in self._collector.add(record, self._segment_length):
+            self._estimation.take(segment)
             if self._is_cruising:
                 period = min(CRUISE_PERIOD * self._estimation.sureness, LONGEST_PERIOD)
-                self._skip = period - self._stretch_length
+                self._skip = period - self._segment_length
 
     def estimate(self) -> Identification | None:
         """Return the newest estimate; None as long as there was not enough motion."""
         return self._estimation.result
 
     def finish(self) -> Identification | None:
-        """Use what is still waiting to become a longer stretch, and return the estimate on everything."""
-        for stretch in self._collector.flush():
-            self._estimation.take(stretch)
+        """Use what is still waiting to become a longer segment, and return the estimate on everything."""
+        for segment in self._collector.flush():
+            self._estimation.take(segment)
         return self._estimation.result
 
     @property
@@ -85,8 +85,8 @@ class Identifier:
         return self._sparing and self._estimation.sureness >= 1.0
 
     @property
-    def _stretch_length(self) -> float:
-        if self._is_cruising:  # from where the period grows no more on, the stretches get shorter
+    def _segment_length(self) -> float:
+        if self._is_cruising:  # from where the period grows no more on, the segments get shorter
             surplus = CRUISE_PERIOD * self._estimation.sureness / LONGEST_PERIOD
-            return min(CRUISE_STRETCH, max(SHORTEST_STRETCH, CRUISE_STRETCH / surplus))
-        return min(LONGEST_STRETCH, max(1.0, 0.25 * self._estimation.seconds))
+            return min(CRUISE_SEGMENT, max(SHORTEST_SEGMENT, CRUISE_SEGMENT / surplus))
+        return min(LONGEST_SEGMENT, max(1.0, 0.25 * self._estimation.seconds))

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from ..arrays import ComplexArray, FloatArray
 from ..model.parameters import ParametricModel
 from ..reducer import LinePair
-from .checks.critical_speed import instability_speed
+from .checks.critical_speed import critical_speed
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -88,12 +88,12 @@ class Identification:
     beta_covariance: FloatArray | None = None
 
     @property
-    def instability_speed(self) -> float:
+    def critical_speed(self) -> float:
         """Lowest wave-generator speed [rpm] at which `model` is parametrically unstable; inf if none, NaN without it.
 
         Worked out when asked for: it takes as long as the identification of some seconds of motion.
         """
-        return math.nan if self.model is None else _instability_speed(self.model)
+        return math.nan if self.model is None else _critical_speed(self.model)
 
 
-_instability_speed = functools.lru_cache(maxsize=16)(instability_speed)
+_critical_speed = functools.lru_cache(maxsize=16)(critical_speed)

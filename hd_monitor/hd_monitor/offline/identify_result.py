@@ -49,8 +49,8 @@ def joint_entry(joint: JointIdentification) -> dict[str, Any]:
         "natural_frequency": None,
         "damping_ratio": None,
         "load_fluctuation": None,
-        "instability_speed_rpm": found.instability_speed,
-        "never_unstable": math.isinf(found.instability_speed),
+        "instability_speed_rpm": found.critical_speed,
+        "never_unstable": math.isinf(found.critical_speed),
         "lines": line_entries(found),
         "directions": [
             {
@@ -60,7 +60,7 @@ def joint_entry(joint: JointIdentification) -> dict[str, Any]:
                 "chance": d.chance._asdict(),
                 "dominance": d.dominance._asdict(),
                 "rival_order": d.rival,
-                "strokes": d.strokes,
+                "strokes": d.segments,
                 "samples": d.samples,
             }
             for d in joint.directions

@@ -72,7 +72,7 @@ def _dynamics(joint: JointIdentification, found: Identification) -> Iterator[str
             yield f"  {name:<22} {start:g}{unit} as given: the motion does not tell it better"
     load = Estimate.gaussian(found.load_fluctuation, found.load_fluctuation_std)
     yield f"  {'load fluctuation':<22} {_value(load, 1.0)} N·m"
-    speed = found.instability_speed
+    speed = found.critical_speed
     yield f"  {'unstable from':<22} " + (
         f"{speed:.0f} rpm of the wave generator" if math.isfinite(speed) else "no speed"
     )
@@ -81,7 +81,7 @@ def _dynamics(joint: JointIdentification, found: Identification) -> Iterator[str
 def _directions(joint: JointIdentification) -> Iterator[str]:
     cs, fs = joint.settings.reducer.output_orders
     for d in joint.directions:
-        yield f"  {d.name}: {d.strokes} strokes, {d.samples} samples" + (
+        yield f"  {d.name}: {d.segments} strokes, {d.samples} samples" + (
             f"; a larger line at {d.rival:.0f}" if d.rival is not None else ""
         )
         for name, order, place in (("circular spline", cs, 0), ("flexspline", fs, 1)):

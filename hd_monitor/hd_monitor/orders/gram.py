@@ -1,4 +1,4 @@
-"""Strokes whitened, freed from their trend, and summed up in Gram matrices that add up over strokes."""
+"""Segments whitened, freed from their trend, and summed up in Gram matrices that add up over segments."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -8,11 +8,11 @@ from scipy.interpolate import BSpline
 
 from ..arrays import FloatArray
 from ..reducer import LinePair
-from .joint_segment import HIGHEST_SHARE, Stroke
+from .joint_segment import HIGHEST_SHARE, JointSegment
 from .whitening import settled, whiten
 
-PLACEBOS = 12
-"""Placebo pairs of orders around a pair, one line separation apart: the noise floor is what a fit finds there."""
+REFERENCE_PAIRS = 12
+"""Reference pairs of orders around a pair, one line separation apart: the noise floor is what a fit finds there."""
 
 FLOOR_REACH = 0.15
 """Part of the pair's order within which they stay, five in any case."""
@@ -34,7 +34,7 @@ class PairOrders:
         The circular spline's and the flexspline's; or any number of lines, where others are tried.
     nuisance : ndarray
         Lines of the motor, fitted along.
-    placebos : ndarray
+    reference_orders : ndarray
         Where there is no line.
     trend : float
         Order up to which the trend follows the signal.
@@ -44,31 +44,37 @@ class PairOrders:
 
     lines: FloatArray
     nuisance: FloatArray
-    placebos: FloatArray
+    reference_orders: FloatArray
     trend: float
     separation: float
 
     @classmethod
     def around(cls, pair: LinePair, k: int = 1, motor: Iterable[float] = ()) -> "PairOrders":
-        """Choose the placebo orders around the k-th multiple of the first `pair`, off it and off the motor's orders."""
+        """Choose reference orders around the k-th multiple of the first `pair`, away from the motor's orders."""
         trend = pair.circular_spline / TREND_CYCLES
         pair = LinePair(k * pair.circular_spline, k * pair.flexspline)
         separation = pair.flexspline - pair.circular_spline
-        count = max(5, min(PLACEBOS, int(FLOOR_REACH * pair.circular_spline / separation)))
+        count = max(5, min(REFERENCE_PAIRS, int(FLOOR_REACH * pair.circular_spline / separation)))
         offsets = separation * np.arange(1.0, count + 1.0)
-        placebos = np.concatenate([pair.circular_spline - offsets[::-1], pair.flexspline + offsets])
+        reference_orders = np.concatenate([pair.circular_spline - offsets[::-1], pair.flexspline + offsets])
         others = np.array([order for order in motor if min(abs(order - line) for line in pair) > 1e-6])
-        clear = placebos > separation
+        clear = reference_orders > separation
         for order in others:
-            clear &= np.abs(placebos - order) > 0.5 * separation
-        return cls(lines=np.array(pair), nuisance=others, placebos=placebos[clear], trend=trend, separation=separation)
+            clear &= np.abs(reference_orders - order) > 0.5 * separation
+        return cls(
+            lines=np.array(pair),
+            nuisance=others,
+            reference_orders=reference_orders[clear],
+            trend=trend,
+            separation=separation,
+        )
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Gram:
-    """Inner products of a stroke's whitened columns (lines, motor, placebos, signal), in units of its noise.
+    """Inner products of a segment's whitened columns (lines, motor, reference_orders, signal), in units of its noise.
 
-    Gram matrices of strokes add up to that of all strokes together; nothing else of a stroke need be kept.
+    Gram matrices of segments add up to that of all segments together; nothing else of a segment need be kept.
     """
 
     products: FloatArray
@@ -76,19 +82,19 @@ class Gram:
     noise: float
 
 
-def gram_of_stroke(stroke: Stroke, orders: PairOrders, coefficients: FloatArray) -> Gram | None:
-    """Whiten a stroke, take its trend off and sum it up; None if it is too short for that."""
-    slow = stroke.speed * orders.lines[-1] <= HIGHEST_SHARE * stroke.rate * 2.0 * np.pi
-    good = settled(stroke.starts, coefficients) & slow
-    trend = trend_columns(stroke, orders.trend)
+def gram_of_segment(segment: JointSegment, orders: PairOrders, coefficients: FloatArray) -> Gram | None:
+    """Whiten a segment, take its trend off and sum it up; None if it is too short for that."""
+    slow = segment.speed * orders.lines[-1] <= HIGHEST_SHARE * segment.rate * 2.0 * np.pi
+    good = settled(segment.starts, coefficients) & slow
+    trend = trend_columns(segment, orders.trend)
     if np.count_nonzero(good) < 2 * (trend.shape[1] + 2 * (orders.lines.size + orders.nuisance.size)):
         return None
     columns = np.concatenate(
         [
-            stroke.columns(orders.lines),
-            stroke.columns(orders.nuisance),
-            stroke.columns(orders.placebos),
-            stroke.values[:, None] - stroke.values.mean(),
+            segment.columns(orders.lines),
+            segment.columns(orders.nuisance),
+            segment.columns(orders.reference_orders),
+            segment.values[:, None] - segment.values.mean(),
         ],
         axis=1,
     )
@@ -104,17 +110,17 @@ def gram_of_stroke(stroke: Stroke, orders: PairOrders, coefficients: FloatArray)
     return Gram(products=columns.T @ columns, rows=int(np.count_nonzero(good)), noise=noise)
 
 
-def residual_of_stroke(stroke: Stroke, orders: PairOrders) -> FloatArray:
-    """What trend and lines leave of a stroke's signal, shape (rows,): what the whitening is learnt from."""
-    parts = [stroke.columns(orders.lines), stroke.columns(orders.nuisance), stroke.values[:, None]]
-    columns = project(trend_columns(stroke, orders.trend), np.concatenate(parts, axis=1))
+def residual_of_segment(segment: JointSegment, orders: PairOrders) -> FloatArray:
+    """What trend and lines leave of a segment's signal, shape (rows,): what the whitening is learnt from."""
+    parts = [segment.columns(orders.lines), segment.columns(orders.nuisance), segment.values[:, None]]
+    columns = project(trend_columns(segment, orders.trend), np.concatenate(parts, axis=1))
     fit, _ = clipped_fit(columns[:, :-1], columns[:, -1])
     return np.asarray(columns[:, -1] - fit)
 
 
-def trend_columns(stroke: Stroke, order: float) -> FloatArray:
+def trend_columns(segment: JointSegment, order: float) -> FloatArray:
     """Cubic splines in the angle, shape (rows, terms), with so many knots per revolution: friction, gravity, servo."""
-    angle = stroke.angle
+    angle = segment.angle
     span = float(np.ptp(angle))
     pieces = max(1, round(span * order / (2.0 * np.pi)))
     knots = np.concatenate([np.zeros(3), np.linspace(0.0, 1.0, pieces + 1), np.ones(3)])

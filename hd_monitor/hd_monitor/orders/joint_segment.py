@@ -1,4 +1,4 @@
-"""Joint samples cut into strokes: one direction, fast enough for the lines and slow enough for the sampling rate."""
+"""Joint samples cut into segments: one direction, fast enough for the lines and slow enough for the sampling rate."""
 
 import itertools
 import math
@@ -21,13 +21,13 @@ WORKING_RATE = 250.0
 """Hz; faster samples are averaged down to about this, which loses nothing of the lines that a joint's speed allows."""
 
 LONGEST_GAP = 0.5
-"""s without a message that end a stroke; shorter gaps are left out of it."""
+"""s without a message that end a segment; shorter gaps are left out of it."""
 
 LONGEST = 6.0
-"""s after which a stroke is closed and the next one begins, so that an endless rotation yields evidence too."""
+"""s after which a segment is closed and the next one begins, so that an endless rotation yields evidence too."""
 
 SHORTEST = 40
-"""Rows of a stroke that is worth keeping: more than its trend terms."""
+"""Rows of a segment that is worth keeping: more than its trend terms."""
 
 GAP = 2.5
 """Sample periods between two messages above which something is missing."""
@@ -40,8 +40,8 @@ SPEED_SPAN = 0.04
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Stroke:
-    """A stretch of motion in one direction.
+class JointSegment:
+    """A segment of motion in one direction.
 
     Attributes
     ----------
@@ -104,8 +104,8 @@ class Stroke:
         return np.concatenate([gain * np.cos(phase), -gain * np.sin(phase)], axis=1)
 
 
-class StrokeCutter:
-    """Turns a stream of joint samples into strokes, independent of how the stream is chunked.
+class JointSegmentCutter:
+    """Turns a stream of joint samples into segments, independent of how the stream is chunked.
 
     Parameters
     ----------
@@ -127,8 +127,8 @@ class StrokeCutter:
         self.too_fast = 0.0
         self.turning = 0.0
 
-    def add(self, samples: JointSamples) -> list[Stroke]:
-        """Take in messages and return the strokes that are complete now."""
+    def add(self, samples: JointSamples) -> list[JointSegment]:
+        """Take in messages and return the segments that are complete now."""
         value = samples.effort if self._source == "joint_effort" else samples.speed
         rows = np.column_stack([samples.times, samples.angle, samples.speed, value])
         rows = rows[np.isfinite(rows[:, [0, 1, 3]]).all(axis=1)]
@@ -144,7 +144,7 @@ class StrokeCutter:
         pause = np.diff(rows[:, 0])
         edges = np.flatnonzero((np.diff(sign) != 0.0) | (pause > LONGEST_GAP) | (pause <= 0.0)) + 1
         bounds = [0, *edges.tolist(), len(rows)]
-        strokes: list[Stroke] = []
+        segments: list[JointSegment] = []
         for first, last in itertools.pairwise(bounds):
             if sign[first] == 0.0:
                 first = last
@@ -152,18 +152,18 @@ class StrokeCutter:
                 end = first + int(np.searchsorted(rows[first:last, 0], rows[first, 0] + LONGEST))
                 if end == len(rows):
                     break
-                strokes += self._close(rows[first:end])
+                segments += self._close(rows[first:end])
                 first = end
         self._pending = rows[first:]
-        return strokes
+        return segments
 
-    def finish(self) -> list[Stroke]:
-        """Return the stroke that is still open, if it is worth one: no more messages will come."""
+    def finish(self) -> list[JointSegment]:
+        """Return the segment that is still open, if it is worth one: no more messages will come."""
         rows, self._pending, self._recent = self._pending, np.empty((0, 4)), np.empty((0, 4))
         return self._close(rows) if len(rows) and abs(rows[0, 2]) >= self._minimum else []
 
-    def _close(self, rows: FloatArray) -> list[Stroke]:
-        """The stroke of these rows, if it is worth one, less those in which the lines are too fast for the rate."""
+    def _close(self, rows: FloatArray) -> list[JointSegment]:
+        """The segment of these rows, if it is worth one, less those in which the lines are too fast for the rate."""
         if len(rows) < SHORTEST:
             return []
         if self._period is None:
@@ -176,12 +176,12 @@ class StrokeCutter:
         self.too_fast += float(np.count_nonzero(fast)) * period
         if np.count_nonzero(~fast) < SHORTEST * averaged:
             return []
-        stroke = _stroke(rows, ~fast, period, averaged)
-        return [] if stroke is None else [stroke]
+        segment = _segment(rows, ~fast, period, averaged)
+        return [] if segment is None else [segment]
 
 
 def samples_of_records(records: Iterable[Record]) -> JointSamples:
-    """Accelerations in place of the effort, so that records can be cut into strokes like joint states."""
+    """Accelerations in place of the effort, so that records can be cut into segments like joint states."""
     parts = list(records)
     empty = [np.empty(0)]
     return JointSamples(
@@ -205,8 +205,8 @@ def _speeds(rows: FloatArray) -> FloatArray:
     return speed
 
 
-def _stroke(rows: FloatArray, good: BoolArray, period: float, averaged: int) -> Stroke | None:
-    """One stroke of the good rows, averaged in groups that do not reach over gaps."""
+def _segment(rows: FloatArray, good: BoolArray, period: float, averaged: int) -> JointSegment | None:
+    """One segment of the good rows, averaged in groups that do not reach over gaps."""
     place = np.flatnonzero(good)
     apart = np.diff(rows[place, 0]) > GAP * period
     starts = np.concatenate([[True], apart | (np.diff(place) > 1)])
@@ -226,7 +226,7 @@ def _stroke(rows: FloatArray, good: BoolArray, period: float, averaged: int) -> 
         values, times, angle, pace = rows[place, 3], rows[place, 0], rows[place, 1], rows[place, 2]
     if values.size < SHORTEST:
         return None
-    return Stroke(
+    return JointSegment(
         direction=1 if float(pace.mean()) > 0.0 else -1,
         times=times,
         angle=angle,
@@ -239,12 +239,12 @@ def _stroke(rows: FloatArray, good: BoolArray, period: float, averaged: int) -> 
     )
 
 
-def one_speed(strokes: Iterable[Stroke]) -> float:
+def one_speed(segments: Iterable[JointSegment]) -> float:
     """Output speed [rad/s] if nearly all of the motion was at one; NaN if it varied.
 
     At one speed a fixed frequency of the machine, or a tone of its supply, is no different from a line.
     """
-    speeds = [stroke.speed for stroke in strokes]
+    speeds = [segment.speed for segment in segments]
     if not speeds:
         return float("nan")
     low, middle, high = np.percentile(np.concatenate(speeds), [25.0, 50.0, 75.0]).tolist()

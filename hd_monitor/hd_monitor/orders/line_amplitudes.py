@@ -1,4 +1,4 @@
-"""Line amplitudes of the newest stretches, by known-order regression in the joint's angle."""
+"""Line amplitudes of the newest segments, by known-order regression in the joint's angle."""
 
 import math
 from collections.abc import Sequence
@@ -8,7 +8,7 @@ import numpy as np
 from ..identification.fit.noise import NoiseFloor
 from ..identification.result import LineEstimate
 from ..identification.segment.path import powers
-from ..identification.segment.segment import Stretch
+from ..identification.segment.segment import Segment
 from ..reducer import LinePair, Reducer
 
 NEWEST = 4.5
@@ -19,9 +19,9 @@ _DEPENDENT = 1e-8  # reciprocal condition below which the travel does not tell t
 
 
 def measure_lines(
-    recent: Sequence[Stretch], reducer: Reducer, harmonics: int, floor: NoiseFloor
+    recent: Sequence[Segment], reducer: Reducer, harmonics: int, floor: NoiseFloor
 ) -> tuple[LineEstimate, ...]:
-    """Amplitudes of θ'' [rad/s²] of the line pairs k = 1 … harmonics over the newest stretches.
+    """Amplitudes of θ'' [rad/s²] of the line pairs k = 1 … harmonics over the newest segments.
 
     Pairs above what the sampling rate shows are left out, and all of them where the travel does not tell them apart.
     Where it allows that, the lines that load fluctuations and the coupling of the two splines put between and beside
@@ -29,7 +29,7 @@ def measure_lines(
 
     Parameters
     ----------
-    recent : sequence of Stretch
+    recent : sequence of Segment
         In the order of time.
     reducer : Reducer
     harmonics : int
@@ -37,10 +37,10 @@ def measure_lines(
         From which the standard deviations follow.
     """
     newest = [recent[-1]]
-    for stretch in recent[-2::-1]:
-        if sum(s.duration for s in newest) + stretch.duration > NEWEST:
+    for segment in recent[-2::-1]:
+        if sum(s.duration for s in newest) + segment.duration > NEWEST:
             break
-        newest.append(stretch)
+        newest.append(segment)
     angle = np.concatenate([s.angle[s.used] for s in newest])
     values = np.concatenate([(s.acceleration - s.slow @ (s.slow.T @ s.acceleration))[s.used] for s in newest])
     top_speed = max(float(np.abs(s.speed).max()) for s in newest)

@@ -1,4 +1,4 @@
-"""What strokes say about one line pair, pooled: amplitudes with covariance, significance, the noise floor beside."""
+"""What segments say about one line pair, pooled: amplitudes with covariance, significance, the noise floor beside."""
 
 import math
 from collections.abc import Sequence
@@ -35,7 +35,7 @@ class PairEstimate:
     freedom : float
         Degrees of freedom behind the noise floor.
     floor : float
-        Noise power at the placebo orders over that of white noise; above 1 where lines' amplitudes vary.
+        Noise power at the reference orders over that of white noise; above 1 where lines' amplitudes vary.
     noise : float
         Standard deviation of the whitened signal, in its unit.
     rows : int
@@ -78,7 +78,7 @@ class PairEstimate:
 
     @property
     def chance(self) -> LinePair:
-        """Probability that noise alone makes a line this large (F test against the placebo orders)."""
+        """Probability that noise alone makes a line this large (F test against the reference orders)."""
         return LinePair(*line_chances(self))
 
     def dominance(self, ratio: float) -> LinePair:
@@ -97,7 +97,7 @@ class PairEstimate:
 class LineSolution:
     """Lines fitted from sums: phasors, their covariance (real parts, then imaginary ones), and the floor behind it.
 
-    `explained` is the power they explain in units of the floor; `left` and `found` are the placebo columns' products
+    `explained` is the power they explain in units of the floor; `left` and `found` are the reference columns' products
     with each other and with the signal, once the fit is taken off.
     """
 
@@ -135,7 +135,7 @@ def solve_lines(products: FloatArray, orders: PairOrders) -> LineSolution | None
     cross = products[floors, :fitted]
     left = products[floors, floors] - cross @ inverse @ cross.T
     found = products[floors, -1] - cross @ solution
-    distance = np.abs(np.subtract.outer(orders.placebos, orders.lines)).min(axis=1) / orders.separation
+    distance = np.abs(np.subtract.outer(orders.reference_orders, orders.lines)).min(axis=1) / orders.separation
     weights = np.tile(1.0 / (1.0 + (distance / NEAR) ** 2), 2)
     trace = float(weights @ np.diag(left))
     if not trace > 0.0:
@@ -158,7 +158,7 @@ def solve_lines(products: FloatArray, orders: PairOrders) -> LineSolution | None
 
 
 def estimate_pair(grams: Sequence[Gram], orders: PairOrders) -> PairEstimate | None:
-    """Pool strokes of one direction, coherently in the absolute angle; None if they do not determine the pair."""
+    """Pool segments of one direction, coherently in the absolute angle; None if they do not determine the pair."""
     if not grams:
         return None
     total: FloatArray = np.sum(np.stack([gram.products for gram in grams]), axis=0)
@@ -174,12 +174,12 @@ def estimate_pair(grams: Sequence[Gram], orders: PairOrders) -> PairEstimate | N
         noise=float(np.sqrt(rows / sum(gram.rows / gram.noise**2 for gram in grams))),
         rows=rows,
         explained=fit.explained,
-        rival=_rival(fit, orders.placebos),
+        rival=_rival(fit, orders.reference_orders),
     )
 
 
 def line_chances(fit: LineSolution | PairEstimate) -> tuple[float, ...]:
-    """Probability, for each line, that noise alone makes it this large (F test against the placebo orders)."""
+    """Probability, for each line, that noise alone makes it this large (F test against the reference orders)."""
     lines, chances = fit.phasors.size, []
     for line in range(lines):
         index = [line, line + lines]
@@ -190,7 +190,7 @@ def line_chances(fit: LineSolution | PairEstimate) -> tuple[float, ...]:
 
 
 def _rival(fit: LineSolution, orders: FloatArray) -> float | None:
-    """Order of a line among the placebo orders that is larger than the pair's and no accident; None without one."""
+    """Order of a line among the reference orders that is larger than the pair's and no accident; None without one."""
     power = (fit.found**2).reshape(2, -1).sum(axis=0)
     size = np.diag(fit.left).reshape(2, -1).sum(axis=0)
     best = int(np.argmax(np.where(size > 0.0, power / np.where(size > 0.0, size, 1.0), 0.0)))

@@ -16,10 +16,10 @@ ROUNDS = 50
 """Rounds of Huber's iteration at most; it converges geometrically, the faster the fewer the outliers."""
 
 FLOOR_ORDERS = 12
-"""Placebo orders on either side of a group of lines at which the noise floor is measured."""
+"""Reference orders on either side of a group of lines at which the noise floor is measured."""
 
 FLOOR_REACH = 0.2
-"""Part of an order within which placebo orders stay, as long as there are three on either side."""
+"""Part of an order within which reference orders stay, as long as there are three on either side."""
 
 DEPENDENT = 1e-9
 """Least size, relative to its own, of the part of a column that the others do not explain."""
@@ -40,7 +40,7 @@ class LineFit:
     noise_std : ndarray, shape (lines,)
         Standard deviation of one sample of white noise as strong as the floor around each line.
     floor_freedom : ndarray, shape (lines,)
-        Effective degrees of freedom behind `noise_std`: 2 for every independent placebo order.
+        Effective degrees of freedom behind `noise_std`: 2 for every independent reference order.
     residual_std : float
         Standard deviation of what the fit leaves, over the whole band.
     samples : int
@@ -136,7 +136,7 @@ def fit_lines(
     robust : bool
         Clip residuals by Huber's rule, so that spikes lose their pull.
     floor_orders : int
-        Placebo orders on either side of the lines, one resolution apart, at which the noise floor is measured.
+        Reference orders on either side of the lines, one resolution apart, at which the noise floor is measured.
 
     Returns
     -------
@@ -149,11 +149,11 @@ def fit_lines(
 
     Notes
     -----
-    The floor is measured where it matters, at placebo orders around each group of lines, since vibration is nowhere
-    white. With residual maker M and placebo columns C, ``|C' M values|²`` has under white noise the expectation
+    The floor is measured where it matters, at reference orders around each group of lines, since vibration is nowhere
+    white. With residual maker M and reference columns C, ``|C' M values|²`` has under white noise the expectation
     ``variance · trace(C' M C)``; dividing by that trace corrects exactly for what the fit has taken away, and
     ``trace² / |C' M C|²`` is Satterthwaite's number of degrees of freedom. White noise is thereby not assumed over
-    the band, only within the placebo range.
+    the band, only within the reference range.
 
     Two lines that are ``d`` resolutions apart (a resolution is one cycle over the travel) inflate each other's variance
     by ``1 / (1 - sinc² d)``: known orders cost that little; unknown frequencies would cost up to a thousand times more.
@@ -189,8 +189,8 @@ def fit_lines(
     # of samples that are not clipped: with them in the residuals' place the formulas of least squares hold.
     residual /= max(1.0 - outliers / values.size, 0.5)
     floors, floor_freedom = np.empty(orders.size), np.empty(orders.size)
-    for group, placebo in _placebo_orders(orders, travel, floor_orders):
-        columns = line_columns(angle, placebo) * scale[:, None]
+    for group, reference in _reference_orders(orders, travel, floor_orders):
+        columns = line_columns(angle, reference) * scale[:, None]
         columns -= basis @ (basis.T @ columns)
         trace = float(np.sum(columns * columns))
         if trace > 0.0:
@@ -269,7 +269,7 @@ def _huber(basis: FloatArray, values: FloatArray, robust: bool) -> tuple[FloatAr
     return fit, residual, outliers
 
 
-def _placebo_orders(orders: FloatArray, travel: float, count: int) -> list[tuple[npt.NDArray[np.intp], FloatArray]]:
+def _reference_orders(orders: FloatArray, travel: float, count: int) -> list[tuple[npt.NDArray[np.intp], FloatArray]]:
     """Groups of neighbouring lines, each with the orders around it, one resolution apart, where no line is."""
     resolution = 2.0 * np.pi / travel
     by_order = np.argsort(orders)
@@ -278,7 +278,7 @@ def _placebo_orders(orders: FloatArray, travel: float, count: int) -> list[tuple
     for group in np.split(by_order, cuts):
         lowest, highest = float(orders[group].min()), float(orders[group].max())
         reach = min(count, max(3, int(FLOOR_REACH * lowest / resolution))) + 1
-        placebo = np.arange(lowest - reach * resolution, highest + (reach + 0.5) * resolution, resolution)
-        clear = np.abs(np.subtract.outer(placebo, orders)).min(axis=1) > 0.99 * resolution
-        groups.append((group, placebo[clear & (placebo > resolution)]))
+        reference = np.arange(lowest - reach * resolution, highest + (reach + 0.5) * resolution, resolution)
+        clear = np.abs(np.subtract.outer(reference, orders)).min(axis=1) > 0.99 * resolution
+        groups.append((group, reference[clear & (reference > resolution)]))
     return groups

@@ -8,7 +8,7 @@ import numpy as np
 from scipy import fft
 
 from ..arrays import FloatArray
-from ..identification.segment.segment import Stretch
+from ..identification.segment.segment import Segment
 from ..identification.segment.torque import own_acceleration
 from ..model.parameters import Dynamics
 from .orthonormal import orthonormal
@@ -95,19 +95,19 @@ class OrderSpectrum:
         return np.block([[lines, column[:, None]], [column[None, :], np.array([[self.power]])]])
 
 
-def with_stretch(
-    spectra: Sequence[OrderSpectrum], stretch: Stretch, signals: Sequence[FloatArray], dynamics: Dynamics
+def with_segment(
+    spectra: Sequence[OrderSpectrum], segment: Segment, signals: Sequence[FloatArray], dynamics: Dynamics
 ) -> tuple[OrderSpectrum, ...]:
-    """Add signals [rad/s²] along a stretch, one to each spectrum.
+    """Add signals [rad/s²] along a segment, one to each spectrum.
 
     They pass a filter that turns back the resonator's phase: past the resonance a line's phase is reversed, so that
     without it the two sides of a speed ramp would cancel.
     """
-    used = stretch.used
-    place = np.floor(np.mod(stretch.angle[used] / math.tau, TURNS) * PER_TURN).astype(np.intp) % (TURNS * PER_TURN)
+    used = segment.used
+    place = np.floor(np.mod(segment.angle[used] / math.tau, TURNS) * PER_TURN).astype(np.intp) % (TURNS * PER_TURN)
     counts = np.bincount(place, minlength=TURNS * PER_TURN)
-    lowest, highest = float(stretch.angle.min()), float(stretch.angle.max())
-    added = _equalised(_levelled(stretch, np.stack(signals)), stretch.period, dynamics)[:, used]
+    lowest, highest = float(segment.angle.min()), float(segment.angle.max())
+    added = _equalised(_levelled(segment, np.stack(signals)), segment.period, dynamics)[:, used]
     return tuple(
         OrderSpectrum(
             sums=spectrum.sums + np.bincount(place, values, spectrum.sums.size),
@@ -120,14 +120,14 @@ def with_stretch(
     )
 
 
-def _levelled(stretch: Stretch, signals: FloatArray) -> FloatArray:
+def _levelled(segment: Segment, signals: FloatArray) -> FloatArray:
     """Signals less slow motion; unlike the fit's they keep all tones: at one speed these may be other teeth's lines."""
-    degree = 3 + math.ceil(_SLOW * stretch.duration)
-    columns = np.polynomial.legendre.legvander(np.linspace(-1.0, 1.0, len(stretch)), degree)
-    own = own_acceleration(stretch.speed, stretch.period)
+    degree = 3 + math.ceil(_SLOW * segment.duration)
+    columns = np.polynomial.legendre.legvander(np.linspace(-1.0, 1.0, len(segment)), degree)
+    own = own_acceleration(segment.speed, segment.period)
     if float(np.ptp(own)) > 0.0:
         columns = np.concatenate([columns, own[:, None]], axis=1)
-    slow, signals = orthonormal(columns * stretch.used[:, None]), signals * stretch.used
+    slow, signals = orthonormal(columns * segment.used[:, None]), signals * segment.used
     return np.asarray(signals - (signals @ slow) @ slow.T)
 
 

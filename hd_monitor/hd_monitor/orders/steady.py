@@ -1,4 +1,4 @@
-"""The newest stretch at an almost constant speed: what a spectrum over time may be taken of."""
+"""The newest segment at an almost constant speed: what a spectrum over time may be taken of."""
 
 import math
 from collections import deque
@@ -14,7 +14,7 @@ _REVOLUTIONS = 2.0  # of the output kept: twice what a Hann window needs for the
 _LONGEST = 60.0  # s
 
 
-class SteadyStretch:
+class SteadySegment:
     """Collects successive records as long as they follow each other at the same speed.
 
     Parameters
@@ -43,7 +43,7 @@ class SteadyStretch:
             self._parts.popleft()
 
     def interrupt(self) -> None:
-        """Forget the stretch: nothing followed it."""
+        """Forget the segment: nothing followed it."""
         self._parts.clear()
 
     def _too_long(self) -> bool:
@@ -52,7 +52,7 @@ class SteadyStretch:
         return travel > _REVOLUTIONS or newest.start + newest.period * len(newest) - rest.start > _LONGEST
 
     def parts(self) -> tuple[Record, ...]:
-        """Return the records of the stretch, none while the speed is not steady."""
+        """Return the records of the segment, none while the speed is not steady."""
         return tuple(self._parts)
 
 

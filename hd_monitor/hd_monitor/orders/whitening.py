@@ -8,7 +8,7 @@ from scipy.linalg import solve_toeplitz
 from ..arrays import BoolArray, FloatArray
 
 TAPS = 8
-"""Samples that the filter looks back: enough for servo noise, few enough to lose little at a stroke's start."""
+"""Samples that the filter looks back: enough for servo noise, few enough to lose little at a segment's start."""
 
 
 def learn_whitening(residuals: Sequence[FloatArray], taps: int = TAPS) -> FloatArray:
@@ -17,7 +17,7 @@ def learn_whitening(residuals: Sequence[FloatArray], taps: int = TAPS) -> FloatA
     Parameters
     ----------
     residuals : sequence of ndarray
-        Stretches of signal without lines and trends; each counts by its length, whatever its level.
+        Segments of signal without lines and trends; each counts by its length, whatever its level.
     taps : int
         Order of the autoregression.
 

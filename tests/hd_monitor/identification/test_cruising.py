@@ -6,9 +6,9 @@ import pytest
 from hd_monitor.acquisition.record import Record
 from hd_monitor.identification.identifier import (
     CRUISE_PERIOD,
-    CRUISE_STRETCH,
+    CRUISE_SEGMENT,
     LONGEST_PERIOD,
-    SHORTEST_STRETCH,
+    SHORTEST_SEGMENT,
     Identifier,
 )
 from hd_monitor.settings import JointSettings
@@ -59,11 +59,11 @@ def run(estimation: Stub, seconds: int, speed: float = SPEED, *, sparing: bool =
 @pytest.mark.parametrize(
     ("sureness", "period", "length"),
     [
-        (1.0, CRUISE_PERIOD, CRUISE_STRETCH),
-        (1.5, 1.5 * CRUISE_PERIOD, CRUISE_STRETCH),
-        (2.0, LONGEST_PERIOD, CRUISE_STRETCH),
-        (4.0, LONGEST_PERIOD, SHORTEST_STRETCH),
-        (9.0, LONGEST_PERIOD, SHORTEST_STRETCH),
+        (1.0, CRUISE_PERIOD, CRUISE_SEGMENT),
+        (1.5, 1.5 * CRUISE_PERIOD, CRUISE_SEGMENT),
+        (2.0, LONGEST_PERIOD, CRUISE_SEGMENT),
+        (4.0, LONGEST_PERIOD, SHORTEST_SEGMENT),
+        (9.0, LONGEST_PERIOD, SHORTEST_SEGMENT),
     ],
 )
 def test_the_better_the_indexes_are_known_the_less_is_looked_at(sureness: float, period: float, length: float) -> None:
@@ -83,7 +83,7 @@ def test_everything_is_looked_at_otherwise(sureness: float, sparing: bool) -> No
 def test_what_is_not_looked_at_makes_the_evidence_older() -> None:
     estimation = Stub(1.0)
     run(estimation, 1000)
-    skipped = (len(estimation.taken) - 1) * (CRUISE_PERIOD - CRUISE_STRETCH)  # what follows the last look is to come
+    skipped = (len(estimation.taken) - 1) * (CRUISE_PERIOD - CRUISE_SEGMENT)  # what follows the last look is to come
     assert estimation.aged == pytest.approx(skipped)
 
 
@@ -94,5 +94,5 @@ def test_a_standing_joint_makes_nothing_older() -> None:
         identifier.add(second(number, speed=0.0))
     for number in range(500, 600):
         identifier.add(second(number))
-    assert estimation.aged == pytest.approx((len(estimation.taken) - 1) * (CRUISE_PERIOD - CRUISE_STRETCH))
+    assert estimation.aged == pytest.approx((len(estimation.taken) - 1) * (CRUISE_PERIOD - CRUISE_SEGMENT))
     assert len(estimation.taken) == pytest.approx(1 + 100.0 / CRUISE_PERIOD, abs=1.0)

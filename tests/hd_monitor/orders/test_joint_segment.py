@@ -10,7 +10,7 @@ from hd_monitor.orders.joint_segment import (
     HIGHEST_SHARE,
     LONGEST,
     LOWEST_FREQUENCY,
-    StrokeCutter,
+    JointSegmentCutter,
     one_speed,
     samples_of_records,
 )
@@ -40,7 +40,7 @@ def swinging(rate=100.0, seconds=40.0, **options):
 
 
 def cut(whole, source="joint_effort", orders=ORDERS, minimum=0.03):
-    cutter = StrokeCutter(source, orders, minimum)
+    cutter = JointSegmentCutter(source, orders, minimum)
     return cutter.add(whole) + cutter.finish()
 
 
@@ -58,7 +58,7 @@ def test_strokes_keep_to_one_direction_and_alternate():
 def test_the_strokes_do_not_depend_on_how_the_messages_are_chunked(cuts, with_speed, rate):
     whole = swinging(rate, 20.0, with_speed=with_speed)
     expected = cut(whole)
-    cutter, found = StrokeCutter("joint_effort", ORDERS, 0.03), []
+    cutter, found = JointSegmentCutter("joint_effort", ORDERS, 0.03), []
     for chosen in np.split(np.arange(len(whole)), sorted(min(c, len(whole)) for c in cuts)):
         found += cutter.add(part(whole, chosen))
     found += cutter.finish()
@@ -79,7 +79,7 @@ def test_an_endless_rotation_is_cut_into_pieces():
 def test_lines_above_nyquist_are_left_out_and_counted():
     times = np.arange(0.0, 30.0, 0.01)
     speed = 0.3 + 0.1 * times  # up to 3.3 rad/s: 105 Hz at 100 Hz
-    cutter = StrokeCutter("joint_effort", ORDERS, 0.03)
+    cutter = JointSegmentCutter("joint_effort", ORDERS, 0.03)
     strokes = cutter.add(samples(times, speed)) + cutter.finish()
     limit = HIGHEST_SHARE * 100.0 * math.tau / 200.0
     assert max(stroke.speed.max() for stroke in strokes) <= limit
@@ -148,7 +148,7 @@ def test_positions_may_wrap(with_speed):
     wrapped = JointSamples(
         times=times, angle=np.mod(whole.angle + math.pi, math.tau) - math.pi, speed=whole.speed, effort=whole.effort
     )
-    cutter, found = StrokeCutter("joint_effort", ORDERS, 0.03), []
+    cutter, found = JointSegmentCutter("joint_effort", ORDERS, 0.03), []
     for chosen in np.array_split(np.arange(times.size), 17):
         found += cutter.add(part(wrapped, chosen))
     found += cutter.finish()
@@ -188,7 +188,7 @@ def test_one_speed_is_recognised():
 
 
 def test_nothing_comes_of_nothing():
-    cutter = StrokeCutter("joint_effort", ORDERS, 0.03)
+    cutter = JointSegmentCutter("joint_effort", ORDERS, 0.03)
     assert cutter.add(part(swinging(), slice(0, 0))) == []
     assert cutter.add(part(swinging(), slice(0, 1))) == []
     assert cutter.finish() == []

@@ -9,12 +9,12 @@ from hd_monitor.acquisition.record import JointSamples
 from hd_monitor.orders.gram import (
     PairOrders,
     clipped_fit,
-    gram_of_stroke,
+    gram_of_segment,
     project,
-    residual_of_stroke,
+    residual_of_segment,
     trend_columns,
 )
-from hd_monitor.orders.joint_segment import StrokeCutter
+from hd_monitor.orders.joint_segment import JointSegmentCutter
 from hd_monitor.orders.pair import estimate_pair, solve_lines
 from hd_monitor.orders.whitening import learn_whitening
 from hd_monitor.reducer import LinePair
@@ -31,15 +31,15 @@ def strokes(rng, signal=lambda angle: 0.0, noise=0.1, count=4, span=3.0):
         times = np.arange(0.0, seconds, 0.01)
         angle = span * times / seconds
         effort = 2.0 + 4.0 * np.sin(angle) + signal(angle) + noise * rng.standard_normal(times.size)
-        cutter = StrokeCutter("joint_effort", (200.0, 202.0), 0.03)
+        cutter = JointSegmentCutter("joint_effort", (200.0, 202.0), 0.03)
         speed = np.full(times.size, span / seconds)
         found += cutter.add(JointSamples(times=times, angle=angle, speed=speed, effort=effort)) + cutter.finish()
     return found
 
 
 def grams(found, orders=ORDERS):
-    coefficients = learn_whitening([residual_of_stroke(stroke, orders) for stroke in found])
-    sums = [gram_of_stroke(stroke, orders, coefficients) for stroke in found]
+    coefficients = learn_whitening([residual_of_segment(stroke, orders) for stroke in found])
+    sums = [gram_of_segment(stroke, orders, coefficients) for stroke in found]
     return [gram for gram in sums if gram is not None]
 
 
@@ -47,14 +47,14 @@ def estimate(found, orders=ORDERS):
     return estimate_pair(grams(found, orders), orders)
 
 
-def test_placebo_orders_are_beside_the_pair_and_off_the_motor():
+def test_reference_orders_are_beside_the_pair_and_off_the_motor():
     assert ORDERS.nuisance.tolist() == [101.0]  # twice the motor's order is the flexspline's own line in this mount
-    assert len(ORDERS.placebos) == 24
-    assert np.abs(np.subtract.outer(ORDERS.placebos, PAIR)).min() == pytest.approx(2.0)
-    assert PairOrders.around(LinePair(60.0, 62.0)).placebos.min() >= 60.0 - 5 * 2.0
+    assert len(ORDERS.reference_orders) == 24
+    assert np.abs(np.subtract.outer(ORDERS.reference_orders, PAIR)).min() == pytest.approx(2.0)
+    assert PairOrders.around(LinePair(60.0, 62.0)).reference_orders.min() >= 60.0 - 5 * 2.0
     near = PairOrders.around(LinePair(16.0, 18.0), 1, (8.0,))
-    assert np.abs(near.placebos - 8.0).min() > 1.0
-    assert near.placebos.min() > 2.0
+    assert np.abs(near.reference_orders - 8.0).min() > 1.0
+    assert near.reference_orders.min() > 2.0
 
 
 def test_finds_phasors_under_friction_and_gravity():
@@ -132,7 +132,11 @@ def test_two_lines_explain_more_than_one_only_if_there_are_two():
     for second, more in ((0.0, False), (0.2, True)):
         found = strokes(rng, lambda angle, a=second: 0.2 * np.cos(200.0 * angle) + a * np.cos(202.0 * angle))
         single = PairOrders(
-            lines=np.array([200.0]), nuisance=ORDERS.nuisance, placebos=ORDERS.placebos, trend=40.0, separation=2.0
+            lines=np.array([200.0]),
+            nuisance=ORDERS.nuisance,
+            reference_orders=ORDERS.reference_orders,
+            trend=40.0,
+            separation=2.0,
         )
         evidence = []
         for orders in (ORDERS, single):
@@ -150,7 +154,7 @@ def test_too_little_to_go_on_is_no_estimate():
     assert short.values.size == 300
     assert estimate_pair(grams([short]), ORDERS) is None  # 17° tell nothing of lines 2 cycles a revolution apart
     still = replace(short, values=np.full(short.values.size, 2.0))
-    assert gram_of_stroke(still, ORDERS, np.ones(1)) is None
+    assert gram_of_segment(still, ORDERS, np.ones(1)) is None
     brief = strokes(rng, count=1)[0]
     few = slice(0, 24)
     brief = replace(
@@ -162,7 +166,7 @@ def test_too_little_to_go_on_is_no_estimate():
         starts=brief.starts[few],
         step=brief.step[few],
     )
-    assert gram_of_stroke(brief, ORDERS, np.ones(9)) is None
+    assert gram_of_segment(brief, ORDERS, np.ones(9)) is None
 
 
 def test_the_trend_cannot_follow_a_line():

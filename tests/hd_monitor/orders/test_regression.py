@@ -70,7 +70,7 @@ def test_is_unbiased_with_the_variance_of_theory(separation, factor):
     # errors of a run count as two because close lines' errors go together.
     assert np.abs(errors.mean(axis=0)).max() < 5.0 * math.sqrt(theory / runs)
     assert np.mean(errors**2) == pytest.approx(theory, rel=4.0 * math.sqrt(2.0 / (2 * runs)))
-    # The claim's scatter is that of its floor, from at least 12 degrees of freedom.
+    # The claim's overdispersion is that of its floor, from at least 12 degrees of freedom.
     assert claimed.mean() == pytest.approx(theory, rel=4.0 * math.sqrt(2.0 / (12 * runs)) + 0.01)
     assert np.mean(floors**2) == pytest.approx(0.25, rel=4.0 * math.sqrt(2.0 / (12 * runs)))
 

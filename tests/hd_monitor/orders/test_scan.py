@@ -3,7 +3,7 @@ import pytest
 
 from hd_monitor.acquisition.record import JointSamples
 from hd_monitor.orders.gram import PairOrders
-from hd_monitor.orders.joint_segment import StrokeCutter
+from hd_monitor.orders.joint_segment import JointSegmentCutter
 from hd_monitor.orders.scan import PARTS, OrderScan
 from hd_monitor.reducer import LinePair
 
@@ -15,7 +15,7 @@ def strokes(cs=0.2, fs=0.1, seconds=60.0):
     angle = 1.5 * np.sin(0.5 * times)
     effort = 3.0 * np.sin(angle) + cs * np.cos(200 * angle + 1.0) + fs * np.cos(202 * angle)
     effort += 0.05 * np.random.default_rng(1).standard_normal(times.size)
-    cutter = StrokeCutter("joint_effort", (200.0, 202.0), 0.03)
+    cutter = JointSegmentCutter("joint_effort", (200.0, 202.0), 0.03)
     samples = JointSamples(times=times, angle=angle, speed=0.75 * np.cos(0.5 * times), effort=effort)
     return cutter.add(samples) + cutter.finish()
 
@@ -38,7 +38,7 @@ def test_any_lines_of_the_range_can_be_fitted_from_the_sums():
 def turning(speed=0.8, seconds=60.0):
     times = np.arange(0.0, seconds, 0.01)
     effort = np.random.default_rng(1).standard_normal(times.size)
-    cutter = StrokeCutter("joint_effort", (200.0, 202.0), 0.03)
+    cutter = JointSegmentCutter("joint_effort", (200.0, 202.0), 0.03)
     samples = JointSamples(times=times, angle=speed * times, speed=np.full(times.size, speed), effort=effort)
     return cutter.add(samples) + cutter.finish()
 

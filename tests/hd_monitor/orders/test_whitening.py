@@ -21,13 +21,13 @@ def test_learns_the_filter_that_made_the_noise():
 
 def test_whitened_noise_is_white():
     rng = np.random.default_rng(2)
-    stretches = [scale * red(rng, 1500) for scale in (0.1, 1.0, 30.0)]
-    coefficients = learn_whitening(stretches)
-    for stretch in stretches:
-        white = whiten(coefficients, stretch[:, None])[TAPS:, 0]
+    segments = [scale * red(rng, 1500) for scale in (0.1, 1.0, 30.0)]
+    coefficients = learn_whitening(segments)
+    for segment in segments:
+        white = whiten(coefficients, segment[:, None])[TAPS:, 0]
         for lag in (1, 2, 3):
             assert abs(correlation(white, lag)) < 4.0 / np.sqrt(white.size)
-        assert abs(correlation(stretch, 1)) > 0.8
+        assert abs(correlation(segment, 1)) > 0.8
 
 
 def test_a_spike_does_not_spoil_the_filter():
@@ -38,9 +38,9 @@ def test_a_spike_does_not_spoil_the_filter():
     np.testing.assert_allclose(learn_whitening(spiky), learn_whitening(clean), atol=0.1)
 
 
-@pytest.mark.parametrize("stretches", [[], [np.zeros(500)], [np.ones(3)]])
-def test_nothing_to_learn_from_leaves_the_signal_as_it_is(stretches):
-    np.testing.assert_array_equal(learn_whitening(stretches), [1.0] + TAPS * [0.0])
+@pytest.mark.parametrize("segments", [[], [np.zeros(500)], [np.ones(3)]])
+def test_nothing_to_learn_from_leaves_the_signal_as_it_is(segments):
+    np.testing.assert_array_equal(learn_whitening(segments), [1.0] + TAPS * [0.0])
 
 
 def test_filters_like_scipy():

@@ -5,14 +5,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..segment.segment import Stretch
+from ..segment.segment import Segment
 
 _VARIES = 0.05
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Coverage:
-    """Sums over all stretches used.
+    """Sums over all segments used.
 
     Attributes
     ----------
@@ -39,17 +39,17 @@ class Coverage:
     squared: float = 0.0
     top_speed: float = 0.0
 
-    def plus(self, stretch: Stretch) -> "Coverage":
-        """Add a stretch."""
-        speed = np.abs(stretch.speed)
+    def plus(self, segment: Segment) -> "Coverage":
+        """Add a segment."""
+        speed = np.abs(segment.speed)
         return Coverage(
-            lowest=min(self.lowest, float(stretch.angle.min())),
-            highest=max(self.highest, float(stretch.angle.max())),
-            samples=self.samples + stretch.raw_samples - stretch.outliers,
-            outliers=self.outliers + stretch.outliers,
-            time=self.time + stretch.duration,
-            way=self.way + float(speed.sum()) * stretch.period,
-            squared=self.squared + float(speed @ speed) * stretch.period,
+            lowest=min(self.lowest, float(segment.angle.min())),
+            highest=max(self.highest, float(segment.angle.max())),
+            samples=self.samples + segment.raw_samples - segment.outliers,
+            outliers=self.outliers + segment.outliers,
+            time=self.time + segment.duration,
+            way=self.way + float(speed.sum()) * segment.period,
+            squared=self.squared + float(speed @ speed) * segment.period,
             top_speed=max(self.top_speed, float(speed.max())),
         )
 

@@ -14,7 +14,7 @@ _SECOND_TONGUE = 2.0  # of the sum of all β over the root of ζ; the second ton
 _ACCURACY = 2e-3  # of the speed
 
 
-def instability_speed(model: ParametricModel) -> float:
+def critical_speed(model: ParametricModel) -> float:
     """Lowest wave-generator speed [rpm] at which free vibration grows; inf if there is none.
 
     Tongues of instability open where a stiffness line, k times the order of a spline, is at 2 fn / m (section 3.4 of

@@ -10,7 +10,7 @@ from ...arrays import BoolArray, FloatArray
 from ...reducer import LinePair
 from ...settings import JointSettings
 from ..fit.linearisation import Predictor
-from ..fit.score_test import Score
+from ..fit.score_test import ScoreTest
 from ..fit.unknowns import Unknowns
 from ..with_sensor.indexes import Indexes
 from .coverage import Coverage
@@ -56,7 +56,7 @@ class Suspect:
     active : ndarray of bool, shape (unknowns,)
         Unknowns that were fitted.
     indexes : Indexes
-    scores : mapping of int to Score
+    scores : mapping of int to ScoreTest
         What the data alone say of natural frequency, damping, torque and delay.
     inflation : float
         Factor on the variances by which the model's misfit widened them.
@@ -75,7 +75,7 @@ class Suspect:
     values: FloatArray
     active: BoolArray
     indexes: Indexes
-    scores: Mapping[int, Score]
+    scores: Mapping[int, ScoreTest]
     inflation: float
     unexplained: float
     highest_frequency: float

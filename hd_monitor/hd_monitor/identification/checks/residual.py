@@ -8,28 +8,28 @@ import numpy as np
 from ...arrays import ComplexArray, FloatArray
 from ...reducer import Reducer
 from ..fit.noise import NoiseFloor
-from ..fit.normal_equations import Evidence, NormalEquations
+from ..fit.normal_equations import LinearisedSegment, NormalEquations
 
 SIDE = 3
 """Orders looked at on either side of a pair's middle: the pair, the lines between and a load's side lines."""
 
 _BLOCK = 0.05  # rad of way over which the residual is summed at once
-_TOLD = 1e-3  # share of a stretch in what is known of a combination of unknowns, from which its wish counts
+_TOLD = 1e-3  # share of a segment in what is known of a combination of unknowns, from which its wish counts
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Scatter:
-    """How much the stretches contradict each other in what they say of the unknowns.
+class Overdispersion:
+    """How much the segments contradict each other in what they say of the unknowns.
 
     The noise floor is measured over bands of frequency much wider than a line. Noise that comes and goes with the
     vibration itself (of the measured torque, of the encoder) gathers around the lines, where it hardly lifts the floor
     but is all that matters to the unknowns; so does whatever else the model leaves out near the lines. Then the
-    stretches' wishes for the unknowns differ by more than the floor says.
+    segments' wishes for the unknowns differ by more than the floor says.
 
     Attributes
     ----------
     squares : float
-        Sum over all stretches of the squares of what each would change, in its own standard deviations.
+        Sum over all segments of the squares of what each would change, in its own standard deviations.
     freedom : float
         Expectation of that sum if the residual is nothing but noise like the floor.
     """
@@ -37,15 +37,15 @@ class Scatter:
     squares: float = 0.0
     freedom: float = 0.0
 
-    def plus(self, equations: NormalEquations, covariance: FloatArray) -> "Scatter":
-        """Add a stretch.
+    def plus(self, equations: NormalEquations, covariance: FloatArray) -> "Overdispersion":
+        """Add a segment.
 
         Parameters
         ----------
         equations : NormalEquations
-            What the stretch says around the values fitted.
+            What the segment says around the values fitted.
         covariance : ndarray, shape (unknowns, unknowns)
-            Of the unknowns fitted, this stretch included; 0 for the others.
+            Of the unknowns fitted, this segment included; 0 for the others.
         """
         scale = np.sqrt(covariance.diagonal())
         fitted = np.flatnonzero(scale)
@@ -54,23 +54,23 @@ class Scatter:
         values, directions = np.linalg.eigh(equations.information[place] * np.outer(scale, scale))
         told = values > _TOLD
         directions = directions[:, told]
-        wishes = directions.T @ (equations.gradient[fitted] * scale) / np.sqrt(values[told])
-        # fitting the unknowns to this stretch, too, has taken a part of its noise away
+        wishes = directions.T @ (equations.score[fitted] * scale) / np.sqrt(values[told])
+        # fitting the unknowns to this segment, too, has taken a part of its noise away
         taken = np.einsum(
             "ij,ij->", directions @ (directions.T * values[told, None]), covariance[place] / np.outer(scale, scale)
         )
-        return Scatter(
+        return Overdispersion(
             squares=self.squares + float(wishes @ wishes),
             freedom=self.freedom + max(float(np.count_nonzero(told)) - float(taken), 0.0),
         )
 
-    def faded(self, keep: float) -> "Scatter":
+    def faded(self, keep: float) -> "Overdispersion":
         """Return the sums of data that count `keep` times."""
-        return Scatter(squares=keep * self.squares, freedom=keep * self.freedom)
+        return Overdispersion(squares=keep * self.squares, freedom=keep * self.freedom)
 
     @property
     def inflation(self) -> float:
-        """Factor on the variances that owns up to the scatter: 1 as long as chance explains it."""
+        """Factor on the variances that owns up to the overdispersion: 1 as long as chance explains it."""
         if self.freedom <= 0.0:
             return 1.0
         return max(1.0, self.squares / (self.freedom + math.sqrt(2.0 * self.freedom)))
@@ -90,52 +90,56 @@ class LineResidual:
         Expected squares of the residual's sums if there is nothing but noise.
     travel : float
         Way [rad] that the output went.
-    scatter : Scatter
-        How much the stretches contradict each other.
+    overdispersion : Overdispersion
+        How much the segments contradict each other.
     """
 
     sums: ComplexArray
     predicted: ComplexArray
     weight: FloatArray
     travel: float
-    scatter: Scatter
+    overdispersion: Overdispersion
 
     @classmethod
     def empty(cls, harmonics: int) -> "LineResidual":
         """Return the sums of no data."""
         nothing = np.zeros((harmonics, 2 * SIDE + 1), dtype=np.complex128)
-        return cls(sums=nothing, predicted=nothing, weight=np.zeros(harmonics), travel=0.0, scatter=Scatter())
+        return cls(
+            sums=nothing, predicted=nothing, weight=np.zeros(harmonics), travel=0.0, overdispersion=Overdispersion()
+        )
 
-    def plus(self, evidence: Evidence, covariance: FloatArray, floor: NoiseFloor, reducer: Reducer) -> "LineResidual":
-        """Add a stretch; the covariance is that of the unknowns fitted, 0 for the others."""
-        stretch, harmonics = evidence.stretch, self.weight.size
+    def plus(
+        self, evidence: LinearisedSegment, covariance: FloatArray, floor: NoiseFloor, reducer: Reducer
+    ) -> "LineResidual":
+        """Add a segment; the covariance is that of the unknowns fitted, 0 for the others."""
+        segment, harmonics = evidence.segment, self.weight.size
         line = evidence.linearisation
-        signals = np.stack([line.residual, line.predicted]) * stretch.used
-        demodulated = (signals - (signals @ stretch.slow) @ stretch.slow.T).astype(np.complex128)
+        signals = np.stack([line.residual, line.predicted]) * segment.used
+        demodulated = (signals - (signals @ segment.slow) @ segment.slow.T).astype(np.complex128)
         middle = sum(reducer.output_orders) / 2.0
-        turn = np.exp(-1j * middle * stretch.angle)
+        turn = np.exp(-1j * middle * segment.angle)
         # the orders beside the middle turn slowly: sums over short ways are enough of each sample
-        way = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(stretch.angle)))])
+        way = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(segment.angle)))])
         first = np.flatnonzero(np.diff(np.floor(way / _BLOCK), prepend=-1.0))
-        centre = np.add.reduceat(stretch.angle, first) / np.diff(np.append(first, len(stretch)))
+        centre = np.add.reduceat(segment.angle, first) / np.diff(np.append(first, len(segment)))
         sides = np.exp(-1j * np.multiply.outer(np.arange(-SIDE, SIDE + 1), centre))
         sums, predicted, weight = self.sums.copy(), self.predicted.copy(), self.weight.copy()
         for k in range(harmonics):
             demodulated *= turn
-            frequency = np.abs(stretch.speed) * ((k + 1) * middle / math.tau)
-            seen = (frequency > 1.0) & (frequency < stretch.highest_frequency)
+            frequency = np.abs(segment.speed) * ((k + 1) * middle / math.tau)
+            seen = (frequency > 1.0) & (frequency < segment.highest_frequency)
             if seen.any():
-                std = floor.sample_std(np.maximum(frequency, 1.0), stretch.period)
+                std = floor.sample_std(np.maximum(frequency, 1.0), segment.period)
                 parts = sides @ np.add.reduceat(np.where(seen, demodulated / std, 0.0), first, axis=1).T
                 sums[k] += parts[:, 0]
                 predicted[k] += parts[:, 1]
-                weight[k] += float(np.count_nonzero(stretch.used[seen]))
+                weight[k] += float(np.count_nonzero(segment.used[seen]))
         return LineResidual(
             sums=sums,
             predicted=predicted,
             weight=weight,
-            travel=self.travel + stretch.travel,
-            scatter=self.scatter.plus(evidence.equations, covariance),
+            travel=self.travel + segment.travel,
+            overdispersion=self.overdispersion.plus(evidence.equations, covariance),
         )
 
     def faded(self, keep: float) -> "LineResidual":
@@ -145,7 +149,7 @@ class LineResidual:
             predicted=keep * self.predicted,
             weight=keep * keep * self.weight,
             travel=keep * self.travel,
-            scatter=self.scatter.faded(keep),
+            overdispersion=self.overdispersion.faded(keep),
         )
 
     @property

@@ -1,4 +1,4 @@
-"""Gauss-Newton fit of the unknowns to a number of stretches at once."""
+"""Gauss-Newton fit of the unknowns to a number of segments at once."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...arrays import BoolArray, FloatArray
-from ..segment.segment import FREQUENCY_MARGIN, Stretch
-from .information import Knowledge
+from ..segment.segment import FREQUENCY_MARGIN, Segment
+from .information import Information
 from .linearisation import Predictor
 from .noise import NoiseFloor
-from .normal_equations import Evidence, NormalEquations, examine
+from .normal_equations import LinearisedSegment, NormalEquations, examine
 from .unknowns import Unknowns
 
 LARGEST_FLUCTUATION = 0.8
@@ -36,8 +36,8 @@ class Fit:
     Attributes
     ----------
     values : ndarray, shape (unknowns,)
-    evidence : tuple of Evidence
-        Of every stretch, at `values`.
+    segments : tuple of LinearisedSegment
+        Of every segment, at `values`.
     equations : NormalEquations
         Their sum, without the prior.
     cost : float
@@ -47,11 +47,11 @@ class Fit:
     step_size : float
         Its size in standard deviations of the unknowns.
     covariance : ndarray, shape (unknowns, unknowns)
-        Of the unknowns fitted, by the information of the stretches and the prior; 0 for the others.
+        Of the unknowns fitted, by the information of the segments and the prior; 0 for the others.
     """
 
     values: FloatArray
-    evidence: tuple[Evidence, ...]
+    segments: tuple[LinearisedSegment, ...]
     equations: NormalEquations
     cost: float
     step: FloatArray
@@ -62,62 +62,62 @@ class Fit:
     def floor(self) -> NoiseFloor:
         """Noise floor of what the fit leaves."""
         floor = NoiseFloor()
-        for item in self.evidence:
-            floor = floor.updated(item.stretch, item.residual, item.leverage(self.covariance))
+        for item in self.segments:
+            floor = floor.updated(item.segment, item.residual, item.leverage(self.covariance))
         return floor
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Problem:
-    """Stretches to be explained, and what the explanation may use.
+    """Segments to be explained, and what the explanation may use.
 
     Attributes
     ----------
-    stretches : sequence of Stretch
+    segments : sequence of Segment
     predictor : Predictor
-    prior : Knowledge
+    prior : Information
     floor : NoiseFloor
     active : ndarray of bool, shape (unknowns,)
         Unknowns that may move.
     """
 
-    stretches: Sequence[Stretch]
+    segments: Sequence[Segment]
     predictor: Predictor
-    prior: Knowledge
+    prior: Information
     floor: NoiseFloor
     active: BoolArray
 
     def at(self, values: FloatArray) -> Fit:
         """Evaluate a point."""
         return self._fit(
-            values, tuple(examine(stretch, self.predictor, values, self.floor) for stretch in self.stretches)
+            values, tuple(examine(segment, self.predictor, values, self.floor) for segment in self.segments)
         )
 
-    def near(self, values: FloatArray, known: Mapping[Stretch, Evidence]) -> Fit:
-        """Evaluate a point to first order from where stretches were simulated nearby; simulate the others."""
+    def near(self, values: FloatArray, known: Mapping[Segment, LinearisedSegment]) -> Fit:
+        """Evaluate a point to first order from where segments were simulated nearby; simulate the others."""
         reach = _NEARBY * _linear_range(self.predictor.unknowns)
-        evidence = []
-        for stretch in self.stretches:
-            item = known.get(stretch)
+        segments = []
+        for segment in self.segments:
+            item = known.get(segment)
             if item is None or bool((np.abs(values - item.simulated) > reach).any()):
-                evidence.append(examine(stretch, self.predictor, values, self.floor))
+                segments.append(examine(segment, self.predictor, values, self.floor))
             else:
-                evidence.append(item.moved(values - item.values).weighted(self.floor))
-        return self._fit(values, tuple(evidence))
+                segments.append(item.moved(values - item.values).weighted(self.floor))
+        return self._fit(values, tuple(segments))
 
-    def _fit(self, values: FloatArray, evidence: tuple[Evidence, ...]) -> Fit:
-        equations = evidence[0].equations
-        for item in evidence[1:]:
+    def _fit(self, values: FloatArray, segments: tuple[LinearisedSegment, ...]) -> Fit:
+        equations = segments[0].equations
+        for item in segments[1:]:
             equations = equations + item.equations
-        information = equations.information + self.prior.information
-        right = equations.gradient + self.prior.gradient(values)
+        information = equations.information + self.prior.matrix
+        right = equations.score + self.prior.score(values)
         covariance = np.zeros(information.shape)
         place = np.ix_(self.active, self.active)
         covariance[place] = np.linalg.pinv(information[place], rcond=1e-13, hermitian=True)
         step = covariance @ right
         return Fit(
             values=values,
-            evidence=evidence,
+            segments=segments,
             equations=equations,
             cost=equations.cost + self.prior.cost(values),
             step=step,
@@ -129,8 +129,8 @@ class Problem:
         """Take Gauss-Newton steps from `start`, at most `rounds`."""
         return self._descend(self._started(start), rounds)
 
-    def solve_near(self, start: FloatArray, known: Mapping[Stretch, Evidence], *, rounds: int) -> Fit:
-        """Do the same, with a first step from what is `known` of the stretches at other points, if it leads down."""
+    def solve_near(self, start: FloatArray, known: Mapping[Segment, LinearisedSegment], *, rounds: int) -> Fit:
+        """Do the same, with a first step from what is `known` of the segments at other points, if it leads down."""
         rough = self.near(start, known)
         trial = self.at(self._bounded(start + rough.step * self._room(start, rough.step)))
         if math.isfinite(trial.cost) and trial.cost < rough.cost:
@@ -141,10 +141,10 @@ class Problem:
         """Evaluate the start; of one that was simulated already, only the weights are new."""
         if not isinstance(start, Fit):
             return self.at(start)
-        here = tuple(item.stretch for item in start.evidence if item.values is item.simulated)
-        if here != tuple(self.stretches):
+        here = tuple(item.segment for item in start.segments if item.values is item.simulated)
+        if here != tuple(self.segments):
             return self.at(start.values)
-        return self._fit(start.values, tuple(item.weighted(self.floor) for item in start.evidence))
+        return self._fit(start.values, tuple(item.weighted(self.floor) for item in start.segments))
 
     def _descend(self, fit: Fit, rounds: int) -> Fit:
         for _ in range(rounds):
@@ -168,7 +168,7 @@ class Problem:
         unknowns = self.predictor.unknowns
         part = np.abs(fit.step) / _linear_range(unknowns)
         forces = unknowns.mask(unknowns.load, unknowns.torque, unknowns.inertia)
-        information = fit.equations.information + self.prior.information
+        information = fit.equations.information + self.prior.matrix
         forced, rest = (
             math.sqrt(max(float(step @ information @ step), 0.0)) for step in (fit.step * forces, fit.step * ~forces)
         )
@@ -181,7 +181,7 @@ class Problem:
         values = fit.values + fit.step
         return Fit(
             values=values,
-            evidence=tuple(item.moved(fit.step) for item in fit.evidence),
+            segments=tuple(item.moved(fit.step) for item in fit.segments),
             equations=equations,
             cost=equations.cost + self.prior.cost(values),
             step=np.zeros(values.size),
@@ -189,7 +189,7 @@ class Problem:
             covariance=fit.covariance,
         )
 
-    def explore(self, starts: Sequence[FloatArray], *, rounds: int) -> tuple["Problem", Fit]:
+    def multistart(self, starts: Sequence[FloatArray], *, rounds: int) -> tuple["Problem", Fit]:
         """Solve from several starts and return the best solution, with the floor of white noise that belongs to it.
 
         The first step from each start leaves the load where the start has it: only then do the stiffness unknowns

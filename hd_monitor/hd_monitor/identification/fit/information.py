@@ -10,69 +10,67 @@ from .normal_equations import NormalEquations
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Knowledge:
-    """The quadratic ``x·information·x - 2 vector·x`` in the unknowns x.
+class Information:
+    """The quadratic ``x·matrix·x - 2 vector·x`` in the unknowns x.
 
     Attributes
     ----------
-    information : ndarray, shape (unknowns, unknowns)
+    matrix : ndarray, shape (unknowns, unknowns)
     vector : ndarray, shape (unknowns,)
     spread : ndarray, shape (unknowns, unknowns)
         Covariance of the vector: the information of every piece times the square of the weight it has left.
     """
 
-    information: FloatArray
+    matrix: FloatArray
     vector: FloatArray
     spread: FloatArray
 
     @classmethod
     def gaussian(cls, std: FloatArray) -> Self:
-        """Return the knowledge that the unknowns are 0 but for these standard deviations."""
+        """Return the information that the unknowns are 0 but for these standard deviations."""
         weight = np.diag(1.0 / np.square(std))
-        return cls(information=weight, vector=np.zeros(std.size), spread=weight)
+        return cls(matrix=weight, vector=np.zeros(std.size), spread=weight)
 
     @classmethod
     def none(cls, size: int) -> Self:
-        """Return no knowledge at all."""
-        return cls(information=np.zeros((size, size)), vector=np.zeros(size), spread=np.zeros((size, size)))
+        """Return no information at all."""
+        return cls(matrix=np.zeros((size, size)), vector=np.zeros(size), spread=np.zeros((size, size)))
 
-    def __add__(self, other: "Knowledge") -> "Knowledge":
-        """Pool with independent knowledge."""
-        return Knowledge(
-            information=self.information + other.information,
+    def __add__(self, other: "Information") -> "Information":
+        """Pool with independent information."""
+        return Information(
+            matrix=self.matrix + other.matrix,
             vector=self.vector + other.vector,
             spread=self.spread + other.spread,
         )
 
-    def plus(self, equations: NormalEquations, values: FloatArray) -> "Knowledge":
+    def plus(self, equations: NormalEquations, values: FloatArray) -> "Information":
         """Add evidence that was linearised at `values`."""
-        return Knowledge(
-            information=self.information + equations.information,
-            vector=self.vector + equations.information @ values + equations.gradient,
+        return Information(
+            matrix=self.matrix + equations.information,
+            vector=self.vector + equations.information @ values + equations.score,
             spread=self.spread + equations.information,
         )
 
-    def faded(self, keep: float) -> "Knowledge":
-        """Return the knowledge with its weight multiplied by `keep`."""
-        return Knowledge(
-            information=keep * self.information, vector=keep * self.vector, spread=keep * keep * self.spread
-        )
+    def faded(self, keep: float) -> "Information":
+        """Return the information with its weight multiplied by `keep`."""
+        return Information(matrix=keep * self.matrix, vector=keep * self.vector, spread=keep * keep * self.spread)
 
     def cost(self, values: FloatArray) -> float:
         """Return the price of `values`, but for a constant."""
-        return float(values @ self.information @ values - 2.0 * self.vector @ values)
+        return float(values @ self.matrix @ values - 2.0 * self.vector @ values)
 
-    def gradient(self, values: FloatArray) -> FloatArray:
+    def score(self, values: FloatArray) -> FloatArray:
         """Return the direction in which the price of `values` falls."""
-        return np.asarray(self.vector - self.information @ values)
+        return np.asarray(self.vector - self.matrix @ values)
 
     def covariance(self, active: BoolArray) -> FloatArray:
         """Covariance of the best values of the unknowns marked active; 0 for the others.
 
         Pieces that have faded weigh less than their worth, so this is not just the inverse of the information.
         """
-        covariance = np.zeros(self.information.shape)
+        covariance = np.zeros(self.matrix.shape)
         place = np.ix_(active, active)
-        inverse = np.linalg.pinv(self.information[place], rcond=1e-14, hermitian=True)
+        inverse = np.linalg.pinv(self.matrix[place], rcond=1e-14, hermitian=True)
         covariance[place] = inverse @ self.spread[place] @ inverse
         return covariance

@@ -1,4 +1,4 @@
-"""The model's prediction of a stretch, and how it changes with every unknown."""
+"""The model's prediction of a segment, and how it changes with every unknown."""
 
 import math
 from dataclasses import dataclass, replace
@@ -10,13 +10,13 @@ from ...interpolation import hermite
 from ...model.oscillator import GAUSS_OFFSETS, Oscillator
 from ...model.parameters import Dynamics
 from ..segment.path import Path
-from ..segment.segment import Stretch
+from ..segment.segment import Segment
 from .unknowns import Unknowns
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Linearisation:
-    """A stretch's prediction error and its derivatives; all in rad/s², one row a sample.
+    """A segment's prediction error and its derivatives; all in rad/s², one row a sample.
 
     Attributes
     ----------
@@ -27,7 +27,7 @@ class Linearisation:
     jacobian : ndarray, shape (samples, unknowns)
         Derivatives of the prediction.
     free : ndarray, shape (samples, 2)
-        The two free vibrations: whatever the state at the stretch's start was, it is a combination of them.
+        The two free vibrations: whatever the state at the segment's start was, it is a combination of them.
     """
 
     residual: FloatArray
@@ -35,19 +35,19 @@ class Linearisation:
     jacobian: FloatArray
     free: FloatArray
 
-    def moved(self, stretch: Stretch, step: FloatArray) -> "Linearisation":
+    def moved(self, segment: Segment, step: FloatArray) -> "Linearisation":
         """Return the linearisation at a point a small `step` of the unknowns on, to first order of the step.
 
         The free vibration is fitted to the measurement anew; the derivatives stay as they are.
         """
-        start, residual = _fit_free(stretch, self.residual - self.jacobian @ step, self.free)
+        start, residual = _fit_free(segment, self.residual - self.jacobian @ step, self.free)
         predicted = self.predicted + self.jacobian @ step + self.free @ start
         return replace(self, residual=residual, predicted=predicted)
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Predictor:
-    """Predicts stretches.
+    """Predicts segments.
 
     Attributes
     ----------
@@ -62,16 +62,16 @@ class Predictor:
     given: Dynamics
     reference_torque: float
 
-    def linearise(self, stretch: Stretch, values: FloatArray) -> Linearisation:
-        """Simulate a stretch and, along the same motion, the effect of every unknown.
+    def linearise(self, segment: Segment, values: FloatArray) -> Linearisation:
+        """Simulate a segment and, along the same motion, the effect of every unknown.
 
         Every sensitivity obeys the oscillator's own equation with another input (differentiate eq. 3 of Gu et al.
         2021 by the unknown), so that one set of transition matrices serves them all.
         """
         dynamics = self.unknowns.dynamics(self.given, values)
-        omega, step = dynamics.angular_frequency, stretch.period / stretch.substeps
-        gauss = _Along(self, stretch.at_gauss, values, dynamics)
-        nodes = _Along(self, stretch.at_steps, values, dynamics)
+        omega, step = dynamics.angular_frequency, segment.period / segment.substeps
+        gauss = _Along(self, segment.at_gauss, values, dynamics)
+        nodes = _Along(self, segment.at_steps, values, dynamics)
         oscillator = Oscillator(dynamics, gauss.stiffness - 1.0, step)
         damping = 2.0 * dynamics.damping_ratio * omega
         spring = (omega**2 * nodes.stiffness)[:, None]
@@ -82,8 +82,8 @@ class Predictor:
         wound = force[0, 0] / spring[0, 0]
         base = oscillator.respond(inputs, initial=[[wound, 1.0, 0.0], [0.0, 0.0, omega]])
         motion = force - damping * base.velocity - spring * base.displacement
-        sampled = motion[:: stretch.substeps]
-        start, residual = _fit_start(stretch, sampled)
+        sampled = motion[:: segment.substeps]
+        start, residual = _fit_start(segment, sampled)
         mix = np.concatenate([[1.0], start])
         theta, theta_dot, theta_ddot = base.displacement @ mix, base.velocity @ mix, motion @ mix
 
@@ -93,7 +93,7 @@ class Predictor:
         jacobian -= damping * change.velocity
         jacobian -= spring * change.displacement
         return Linearisation(
-            residual=residual, predicted=sampled @ mix, jacobian=jacobian[:: stretch.substeps], free=sampled[:, 1:]
+            residual=residual, predicted=sampled @ mix, jacobian=jacobian[:: segment.substeps], free=sampled[:, 1:]
         )
 
 
@@ -130,14 +130,14 @@ class _Along:
         return forcing
 
 
-def _fit_start(stretch: Stretch, motion: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _fit_start(segment: Segment, motion: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Amounts of the two free vibrations that fit the measurement best, and what then remains of it."""
-    return _fit_free(stretch, stretch.acceleration - motion[:, 0], motion[:, 1:])
+    return _fit_free(segment, segment.acceleration - motion[:, 0], motion[:, 1:])
 
 
-def _fit_free(stretch: Stretch, error: FloatArray, motion: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _fit_free(segment: Segment, error: FloatArray, motion: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Amounts of two free vibrations that fit an error best, and what then remains of it."""
-    used, slow = stretch.used, stretch.slow
+    used, slow = segment.used, segment.slow
     error = np.where(used, error, 0.0)
     free = motion * used[:, None]
     flat_error, flat_free = error - slow @ (slow.T @ error), free - slow @ (slow.T @ free)

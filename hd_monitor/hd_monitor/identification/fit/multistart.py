@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...arrays import FloatArray
-from ..segment.segment import Stretch
+from ..segment.segment import Segment
 from .gauss_newton import Fit, Problem
 from .noise import NoiseFloor
 from .unknowns import Unknowns
@@ -22,20 +22,20 @@ START_FREQUENCIES = (-0.12, -0.08, -0.04, 0.04, 0.08, 0.12)
 START_DELAYS = (-0.012, -0.006, -0.003, 0.003, 0.006, 0.012)
 """Lags [s] between the clocks."""
 
-EXPLORED = 4.5
-"""Motion [s] of the newest stretches on which other solutions are tried."""
+NEWEST = 4.5
+"""Motion [s] of the newest segments on which other solutions are tried."""
 
 BETTER = 30.0
 """Logarithm of the likelihood ratio by which another solution must beat the present one on them to be followed."""
 
 
-def newest_stretches(stretches: Sequence[Stretch]) -> list[Stretch]:
+def newest_segments(segments: Sequence[Segment]) -> list[Segment]:
     """Return the newest ones, as many as other solutions are tried on, the newest first."""
-    newest = [stretches[-1]]
-    for stretch in stretches[-2::-1]:
-        if sum(s.duration for s in newest) + stretch.duration > EXPLORED:
+    newest = [segments[-1]]
+    for segment in segments[-2::-1]:
+        if sum(s.duration for s in newest) + segment.duration > NEWEST:
             break
-        newest.append(stretch)
+        newest.append(segment)
     return newest
 
 
@@ -74,16 +74,16 @@ def other_starts(unknowns: Unknowns, *, frequency: bool, delay: bool, thorough: 
     return starts
 
 
-def signal_level(stretches: Sequence[Stretch]) -> NoiseFloor:
+def signal_level(segments: Sequence[Segment]) -> NoiseFloor:
     """White noise as strong as the whole signal: where a fit starts."""
-    densities = [2.0 * s.period * float(np.mean(s.transform(s.acceleration[:, None]) ** 2)) / s.fill for s in stretches]
+    densities = [2.0 * s.period * float(np.mean(s.transform(s.acceleration[:, None]) ** 2)) / s.fill for s in segments]
     return NoiseFloor.white(max(float(np.mean(densities)), 1e-30))
 
 
-def explore_newest(problem: Problem, starts: Sequence[FloatArray], *, rounds: int) -> tuple[Problem, Fit]:
+def multistart_newest(problem: Problem, starts: Sequence[FloatArray], *, rounds: int) -> tuple[Problem, Fit]:
     """Solve from several starts on the newest data; the problem returned has the floor that belongs to the best fit."""
-    newest = newest_stretches(problem.stretches)
-    return replace(problem, stretches=newest, floor=signal_level(newest)).explore(starts, rounds=rounds)
+    newest = newest_segments(problem.segments)
+    return replace(problem, segments=newest, floor=signal_level(newest)).multistart(starts, rounds=rounds)
 
 
 def is_better(problem: Problem, fit: Fit, values: FloatArray) -> bool:

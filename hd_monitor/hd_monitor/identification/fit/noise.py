@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from ...arrays import FloatArray
-from ..segment.segment import Stretch
+from ..segment.segment import Segment
 
 EDGES = np.concatenate([[0.0], 2.0 ** (np.arange(61) / 4.0)])
 """Limits of the bands [Hz]: quarter octaves from 1 Hz to 32 kHz, and one band below; read-only."""
@@ -39,21 +39,21 @@ class NoiseFloor:
         known = np.full(_CENTRES.size, 1e9)
         return cls(power=density * known, freedom=known)
 
-    def updated(self, stretch: Stretch, residual: FloatArray, leverage: FloatArray) -> "NoiseFloor":
-        """Add a stretch's residual, given as its transform.
+    def updated(self, segment: Segment, residual: FloatArray, leverage: FloatArray) -> "NoiseFloor":
+        """Add a segment's residual, given as its transform.
 
         Parameters
         ----------
-        stretch : Stretch
+        segment : Segment
         residual : ndarray, shape (2 * bins,)
         leverage : ndarray, shape (2 * bins,)
             Part of the noise's variance in every row that a fit took away: without it the floor would be too low just
             where it matters, at the lines.
         """
-        frequencies, fill = stretch.frequencies, stretch.fill
+        frequencies, fill = segment.frequencies, segment.fill
         bins = frequencies.size
         place = np.searchsorted(EDGES[1:-1], frequencies)
-        squares = 2.0 * stretch.period * (residual[:bins] ** 2 + residual[bins:] ** 2)
+        squares = 2.0 * segment.period * (residual[:bins] ** 2 + residual[bins:] ** 2)
         rows = 2.0 * fill * np.bincount(place, minlength=self.power.size)
         taken = np.bincount(place, leverage[:bins] + leverage[bins:], self.power.size)
         return NoiseFloor(

@@ -1,24 +1,24 @@
-"""Evidence as normal equations: what a stretch says about the unknowns around a point, in sums that add up."""
+"""Evidence as normal equations: what a segment says about the unknowns around a point, in sums that add up."""
 
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ...arrays import FloatArray
-from ..segment.segment import Stretch
+from ..segment.segment import Segment
 from .linearisation import Linearisation, Predictor
 from .noise import NoiseFloor
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class NormalEquations:
-    """Quadratic model of the cost, ``cost - 2 gradient·d + d·information·d``, for a step d of the unknowns.
+    """Quadratic model of the cost, ``cost - 2 score·d + d·information·d``, for a step d of the unknowns.
 
     Attributes
     ----------
     information : ndarray, shape (unknowns, unknowns)
         Fisher information.
-    gradient : ndarray, shape (unknowns,)
+    score : ndarray, shape (unknowns,)
     cost : float
         Sum of squares of the residual in units of the noise floor.
     freedom : float
@@ -26,7 +26,7 @@ class NormalEquations:
     """
 
     information: FloatArray
-    gradient: FloatArray
+    score: FloatArray
     cost: float
     freedom: float
 
@@ -35,29 +35,29 @@ class NormalEquations:
         downhill = self.information @ step
         return replace(
             self,
-            gradient=self.gradient - downhill,
-            cost=self.cost - 2.0 * float(self.gradient @ step) + float(step @ downhill),
+            score=self.score - downhill,
+            cost=self.cost - 2.0 * float(self.score @ step) + float(step @ downhill),
         )
 
     def __add__(self, other: "NormalEquations") -> "NormalEquations":
         """Pool two pieces of evidence about the same point."""
         return NormalEquations(
             information=self.information + other.information,
-            gradient=self.gradient + other.gradient,
+            score=self.score + other.score,
             cost=self.cost + other.cost,
             freedom=self.freedom + other.freedom,
         )
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Evidence:
-    """What one stretch says at one point: the normal equations and the residual behind them.
+class LinearisedSegment:
+    """What one segment says at one point: the normal equations and the residual behind them.
 
     Attributes
     ----------
-    stretch : Stretch
+    segment : Segment
     values, simulated : ndarray, shape (unknowns,)
-        The point, and the one at which the stretch was simulated: another where the evidence was moved.
+        The point, and the one at which the segment was simulated: another where the evidence was moved.
     equations : NormalEquations
     linearisation : Linearisation
     columns : ndarray, shape (2 * bins, 3 + unknowns)
@@ -72,7 +72,7 @@ class Evidence:
         Part of the noise in every row that the fit of the free vibrations takes away.
     """
 
-    stretch: Stretch
+    segment: Segment
     values: FloatArray
     simulated: FloatArray
     equations: NormalEquations
@@ -91,43 +91,43 @@ class Evidence:
         Parameters
         ----------
         covariance : ndarray, shape (unknowns, unknowns)
-            Of the unknowns fitted, this stretch included; 0 for the others.
+            Of the unknowns fitted, this segment included; 0 for the others.
         """
         rows = self.derivatives / self.std[:, None]
         return np.asarray(self.free_leverage + np.einsum("ij,ij->i", rows @ covariance, rows))
 
-    def moved(self, step: FloatArray) -> "Evidence":
-        """Return what the stretch says at a point a small `step` of the unknowns on, to first order of the step."""
+    def moved(self, step: FloatArray) -> "LinearisedSegment":
+        """Return what the segment says at a point a small `step` of the unknowns on, to first order of the step."""
         return replace(
             self,
             values=self.values + step,
             equations=self.equations.moved(step),
-            linearisation=self.linearisation.moved(self.stretch, step),
+            linearisation=self.linearisation.moved(self.segment, step),
             residual=self.residual - self.derivatives @ step,
         )
 
-    def weighted(self, floor: NoiseFloor) -> "Evidence":
-        """Return what the stretch says under another noise floor; nothing is simulated for that."""
-        return _weighted(self.stretch, self.linearisation, self.columns, floor, self.values, self.simulated)
+    def weighted(self, floor: NoiseFloor) -> "LinearisedSegment":
+        """Return what the segment says under another noise floor; nothing is simulated for that."""
+        return _weighted(self.segment, self.linearisation, self.columns, floor, self.values, self.simulated)
 
 
-def examine(stretch: Stretch, predictor: Predictor, values: FloatArray, floor: NoiseFloor) -> Evidence:
-    """Linearise a stretch at `values` and weight it by the noise floor."""
-    line = predictor.linearise(stretch, values)
-    columns = stretch.transform(np.concatenate([line.free, line.residual[:, None], line.jacobian], axis=1))
-    return _weighted(stretch, line, columns, floor, values, values)
+def examine(segment: Segment, predictor: Predictor, values: FloatArray, floor: NoiseFloor) -> LinearisedSegment:
+    """Linearise a segment at `values` and weight it by the noise floor."""
+    line = predictor.linearise(segment, values)
+    columns = segment.transform(np.concatenate([line.free, line.residual[:, None], line.jacobian], axis=1))
+    return _weighted(segment, line, columns, floor, values, values)
 
 
 def _weighted(
-    stretch: Stretch,
+    segment: Segment,
     line: Linearisation,
     columns: FloatArray,
     floor: NoiseFloor,
     values: FloatArray,
     simulated: FloatArray,
-) -> Evidence:
-    frequencies = stretch.frequencies
-    std = np.tile(floor.sample_std(frequencies, stretch.period), 2)
+) -> LinearisedSegment:
+    frequencies = segment.frequencies
+    std = np.tile(floor.sample_std(frequencies, segment.period), 2)
     weighted = columns / std[:, None]
     if values is not simulated:
         weighted[:, 2] -= weighted[:, 3:] @ (values - simulated)
@@ -135,15 +135,15 @@ def _weighted(
     white = weighted[:, 2:]
     white -= free @ (free.T @ white)
     gram = white.T @ white
-    return Evidence(
-        stretch=stretch,
+    return LinearisedSegment(
+        segment=segment,
         values=values,
         simulated=simulated,
         equations=NormalEquations(
             information=gram[1:, 1:],
-            gradient=gram[1:, 0],
+            score=gram[1:, 0],
             cost=float(gram[0, 0]),
-            freedom=2.0 * frequencies.size * stretch.fill - 2.0,
+            freedom=2.0 * frequencies.size * segment.fill - 2.0,
         ),
         linearisation=line,
         columns=columns,

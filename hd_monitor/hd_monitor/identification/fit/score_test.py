@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import BoolArray, FloatArray
-from .information import Knowledge
+from .information import Information
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Score:
+class ScoreTest:
     """What the data alone say of one unknown, all fitted unknowns being free.
 
     Attributes
@@ -34,25 +34,25 @@ class Score:
         return abs(self.value) / self.std
 
 
-def scores(
-    places: Sequence[int], knowledge: Knowledge, values: FloatArray, active: BoolArray, given_std: FloatArray
-) -> dict[int, Score]:
-    """Efficient scores of some unknowns.
+def score_tests(
+    places: Sequence[int], information: Information, values: FloatArray, active: BoolArray, given_std: FloatArray
+) -> dict[int, ScoreTest]:
+    """Efficient score_tests of some unknowns.
 
     Parameters
     ----------
     places : sequence of int
         Where they stand.
-    knowledge : Knowledge
-        All evidence and the prior knowledge.
+    information : Information
+        All evidence and the prior information.
     values : ndarray, shape (unknowns,)
         The best values of the unknowns fitted, the given ones of the others.
     active : ndarray of bool, shape (unknowns,)
         Unknowns that were fitted.
     given_std : ndarray, shape (unknowns,)
-        Standard deviations of the unknowns in the prior knowledge; that of the one in question has no say.
+        Standard deviations of the unknowns in the prior information; that of the one in question has no say.
     """
-    gradient = knowledge.gradient(values)
+    score = information.score(values)
     idle = [place for place in places if not active[place]]
     sets = [(active, idle)] if idle else []  # those that were not fitted all stand against the same ones
     for place in places:
@@ -62,18 +62,18 @@ def scores(
             sets.append((others, [place]))
     found = {}
     for others, some in sets:
-        coupling = knowledge.information[np.ix_(others, some)]
-        projections = np.linalg.lstsq(knowledge.information[np.ix_(others, others)], coupling, rcond=1e-13)[0]
+        coupling = information.matrix[np.ix_(others, some)]
+        projections = np.linalg.lstsq(information.matrix[np.ix_(others, others)], coupling, rcond=1e-13)[0]
         for place, projection in zip(some, projections.T, strict=True):
             response = np.zeros(values.size)
             response[others] = -projection
             weight = 1.0 / float(given_std[place]) ** 2
-            information = float(knowledge.information[place] @ response + knowledge.information[place, place]) - weight
-            if information <= 1e-6 * weight:
-                found[place] = Score(value=0.0, std=math.inf, response=response)
+            weighed = float(information.matrix[place] @ response + information.matrix[place, place]) - weight
+            if weighed <= 1e-6 * weight:
+                found[place] = ScoreTest(value=0.0, std=math.inf, response=response)
                 continue
-            slope = float(gradient[place] + response @ gradient) + weight * float(values[place])
-            found[place] = Score(
-                value=float(values[place]) + slope / information, std=1.0 / math.sqrt(information), response=response
+            slope = float(score[place] + response @ score) + weight * float(values[place])
+            found[place] = ScoreTest(
+                value=float(values[place]) + slope / weighed, std=1.0 / math.sqrt(weighed), response=response
             )
     return found

@@ -1,4 +1,4 @@
-"""Collects records into stretches of the length that the state of the estimation asks for."""
+"""Collects records into segments of the length that the state of the estimation asks for."""
 
 import math
 
@@ -7,14 +7,14 @@ import numpy as np
 from ...acquisition.record import Record
 
 SHORTEST = 0.25
-"""Length [s] below which a contiguous stretch is not worth its two unknown starting values."""
+"""Length [s] below which a contiguous segment is not worth its two unknown starting values."""
 
 _FEWEST_SAMPLES = 64
 _SLACK = 0.1  # s that may lack from the length asked for: records are cut at whole periods of the stamps
 
 
 class Collector:
-    """Joins records that follow each other without a gap; standing ones end a stretch.
+    """Joins records that follow each other without a gap; standing ones end a segment.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ class Collector:
         ----------
         record : Record
         length : float
-            Length [s] from which a stretch is complete.
+            Length [s] from which a segment is complete.
         """
         done = [] if record.continues else self.flush()
         known = np.isfinite(record.angle).all() and np.isfinite(record.speed).all()

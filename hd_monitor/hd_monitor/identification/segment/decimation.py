@@ -1,4 +1,4 @@
-"""Conditioning of a stretch of raw samples: outliers left out, and a rate higher than needed reduced."""
+"""Conditioning of a segment of raw samples: outliers left out, and a rate higher than needed reduced."""
 
 import math
 from dataclasses import dataclass
@@ -27,7 +27,7 @@ _BRIDGED = 2  # samples missing in a row that interpolation replaces before the 
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Conditioned:
+class Decimated:
     """Samples fit for use.
 
     Attributes
@@ -53,7 +53,7 @@ class Conditioned:
     outliers: int
 
 
-def condition(raw: FloatArray, period: float, line: float, natural: float) -> Conditioned:
+def condition(raw: FloatArray, period: float, line: float, natural: float) -> Decimated:
     """Leave out outliers, and reduce the sampling rate where the signal needs much less.
 
     Parameters
@@ -75,12 +75,12 @@ def condition(raw: FloatArray, period: float, line: float, natural: float) -> Co
     lost = 2.0 * half / raw.size  # the filter has no output at the ends
     if factor < 2 or lost > (_LOSS_DEAR if factor >= _WORTH_MUCH else _LOSS) or np.count_nonzero(used) < 8:
         values = np.where(used, raw, 0.0)
-        return Conditioned(values=values, used=used, factor=1, first=0, highest_frequency=0.5 / period, outliers=count)
+        return Decimated(values=values, used=used, factor=1, first=0, highest_frequency=0.5 / period, outliers=count)
     taps = signal.firwin(2 * half + 1, 0.43 * 2.0 / factor, window=("kaiser", 6.0))
     values = np.convolve(_bridge(raw, used), taps, mode="valid")[::factor]
     hole = _in_hole(used)
     near = np.convolve(hole, np.ones(2 * factor + 1), mode="same")[half : raw.size - half : factor] < 0.5
-    return Conditioned(
+    return Decimated(
         values=np.where(near, values, 0.0),
         used=near,
         factor=factor,

@@ -1,4 +1,4 @@
-"""A contiguous stretch of vibration made ready for fitting: its samples, and the motion between them."""
+"""A contiguous segment of vibration made ready for fitting: its samples, and the motion between them."""
 
 import math
 from collections.abc import Sequence
@@ -15,13 +15,13 @@ from ...reducer import Reducer
 from .decimation import condition
 from .path import Motion, Path, paths_along
 from .tones import foreign_tones, tone_columns
-from .torque import own_acceleration, smooth_torque
+from .torque import own_acceleration, regress_torque
 
 FREQUENCY_MARGIN = 1.25
 """Factor by which the natural frequency may turn out higher than given."""
 
 MOST_SUBSTEPS = 16
-"""Integration steps per sample above which a stretch is refused."""
+"""Integration steps per sample above which a segment is refused."""
 
 LARGEST_PHASE_STEP = 1.0
 """Phase [rad] of the natural oscillation and of the fastest stiffness harmonic that an integration step may cover."""
@@ -30,8 +30,8 @@ _SIDE_ORDERS = 4.0  # orders above the highest line at which load fluctuations m
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Stretch:
-    """A contiguous stretch on a uniform grid.
+class Segment:
+    """A contiguous segment on a uniform grid.
 
     Attributes
     ----------
@@ -80,8 +80,8 @@ class Stretch:
         """Return the number of samples, those left out included."""
         return int(self.acceleration.size)
 
-    def mirrored(self) -> "Stretch":
-        """Return the stretch as a sensor mounted the other way round would have recorded it."""
+    def mirrored(self) -> "Segment":
+        """Return the segment as a sensor mounted the other way round would have recorded it."""
         return replace(self, acceleration=-self.acceleration)
 
     @property
@@ -125,8 +125,8 @@ class Stretch:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class StretchBuilder:
-    """Makes stretches of records.
+class SegmentBuilder:
+    """Makes segments of records.
 
     Attributes
     ----------
@@ -150,7 +150,7 @@ class StretchBuilder:
     inertial: bool = False
     keep_tones: bool = False
 
-    def build(self, records: Sequence[Record], torque: float | None) -> Stretch:
+    def build(self, records: Sequence[Record], torque: float | None) -> Segment:
         """Join successive records, each of which continues the one before it.
 
         Parameters
@@ -183,10 +183,10 @@ class StretchBuilder:
                 "such a signal shows nothing of them; sample faster"
             )
         own = own_acceleration(speed, step)
-        known = np.full(angle.size, torque) if torque is not None else smooth_torque(measured, angle, speed, own, step)
+        known = np.full(angle.size, torque) if torque is not None else regress_torque(measured, angle, speed, own, step)
         motion = Motion(angle, speed, own, known, step)
         at_steps, at_gauss = paths_along(motion, self.reducer, self.harmonics, self.load_orders, steps)
-        return Stretch(
+        return Segment(
             start=records[0].start + signal.first * period,
             period=step,
             acceleration=signal.values,

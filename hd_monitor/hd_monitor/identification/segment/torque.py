@@ -36,7 +36,7 @@ def own_acceleration(speed: FloatArray, period: float) -> FloatArray:
     return np.asarray(gaussian_filter1d(np.gradient(speed, period), _QUICK / period, mode="nearest"))
 
 
-def smooth_torque(
+def regress_torque(
     torque: FloatArray, angle: FloatArray, speed: FloatArray, acceleration: FloatArray, period: float
 ) -> FloatArray:
     """Return a measured torque [N·m] without its noise.

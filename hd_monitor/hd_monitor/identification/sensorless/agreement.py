@@ -34,8 +34,8 @@ class DirectionEvidence:
         Confidence that each spline's line is the larger one, by more than ``diagnosis.both_ratio`` allows.
     rival : float or None
         Order beside the pair with a significant line larger than both [cycles per output revolution], if there is one.
-    strokes, samples : int
-        Strokes and rows used.
+    segments, samples : int
+        Segments and rows used.
     """
 
     name: str
@@ -44,11 +44,11 @@ class DirectionEvidence:
     chance: LinePair
     dominance: LinePair
     rival: float | None
-    strokes: int
+    segments: int
     samples: int
 
     @classmethod
-    def of(cls, name: str, estimate: PairEstimate, ratio: float, strokes: int) -> "DirectionEvidence":
+    def of(cls, name: str, estimate: PairEstimate, ratio: float, segments: int) -> "DirectionEvidence":
         """Sum up an estimate; `ratio` is ``diagnosis.both_ratio``."""
         return cls(
             name=name,
@@ -57,7 +57,7 @@ class DirectionEvidence:
             chance=estimate.chance,
             dominance=estimate.dominance(ratio),
             rival=estimate.rival,
-            strokes=strokes,
+            segments=segments,
             samples=estimate.rows,
         )
 

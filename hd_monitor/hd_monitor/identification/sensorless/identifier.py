@@ -9,8 +9,8 @@ import numpy as np
 
 from ...acquisition.record import JointSamples
 from ...arrays import FloatArray
-from ...orders.gram import Gram, PairOrders, gram_of_stroke, residual_of_stroke
-from ...orders.joint_segment import Stroke, StrokeCutter, one_speed
+from ...orders.gram import Gram, PairOrders, gram_of_segment, residual_of_segment
+from ...orders.joint_segment import JointSegment, JointSegmentCutter, one_speed
 from ...orders.pair import PairEstimate, estimate_pair
 from ...orders.whitening import learn_whitening
 from ...reducer import LinePair
@@ -31,9 +31,9 @@ RELEARN = 3.0
 
 @dataclass(slots=True, eq=False)
 class _Pooled:
-    """A stroke with its sums for every pair, k = 1 first; None where the pair is too fast for the sampling rate."""
+    """A segment with its sums for every pair, k = 1 first; None where the pair is too fast for the sampling rate."""
 
-    stroke: Stroke
+    segment: JointSegment
     grams: list[Gram | None]
 
 
@@ -47,9 +47,9 @@ class SensorlessIdentifier:
 
     Notes
     -----
-    The lines are sought in the position of the same message, so that the stamps hardly matter. Every stroke (one
+    The lines are sought in the position of the same message, so that the stamps hardly matter. Every segment (one
     direction, no stop) is whitened by a filter learnt from the joint itself and freed from friction, gravity and the
-    servo's slow work by a spline in the angle that is too stiff to follow a line. Strokes of one direction add up
+    servo's slow work by a spline in the angle that is too stiff to follow a line. Segments of one direction add up
     coherently in the absolute angle; the directions stay apart, since friction and load make them differ.
 
     A motor current tells nothing of the stiffness's size, so the indexes are relative: shares whose squares add up to
@@ -85,7 +85,7 @@ class SensorlessIdentifier:
         self._neighbours = [LinePair(cs + shift, fs + shift) for shift in NEIGHBOURS]
         self._orders += [PairOrders.around(pair, 1, motor) for pair in self._neighbours]
         minimum_speed = settings["analysis.minimum_speed"] * 2.0 * np.pi / 60.0 / reduction
-        self._cutter = StrokeCutter(settings["input.source"], (cs, fs), minimum_speed)
+        self._cutter = JointSegmentCutter(settings["input.source"], (cs, fs), minimum_speed)
         self._pooled: deque[_Pooled] = deque()
         self._coefficients = np.ones(1)
         self._learnt = 0.0
@@ -107,11 +107,11 @@ class SensorlessIdentifier:
         signal = samples.effort if self._settings["input.source"] == "joint_effort" else samples.speed
         self._messages += len(samples)
         self._usable += int(np.count_nonzero(np.isfinite(signal)))
-        for stroke in self._cutter.add(samples):
-            self._append(stroke)
+        for segment in self._cutter.add(samples):
+            self._append(segment)
 
     def estimate(self) -> Identification | None:
-        """Return what the strokes seen so far tell, or None before the first one."""
+        """Return what the segments seen so far tell, or None before the first one."""
         if self._stale:
             self._latest = self._identify()
             self._stale = False
@@ -123,43 +123,43 @@ class SensorlessIdentifier:
         return self._latest
 
     def finish(self) -> Identification | None:
-        """Use the stroke that is still open, and return what everything seen tells."""
-        for stroke in self._cutter.finish():
-            self._append(stroke)
+        """Use the segment that is still open, and return what everything seen tells."""
+        for segment in self._cutter.finish():
+            self._append(segment)
         return self.estimate()
 
     # Pooling -------------------------------------------------------------------------------------------------------
 
-    def _append(self, stroke: Stroke) -> None:
+    def _append(self, segment: JointSegment) -> None:
         self._stale = True
-        self._seen += stroke.duration
-        self._pooled.append(_Pooled(stroke, []))
-        held = sum(pooled.stroke.duration for pooled in self._pooled)
-        while len(self._pooled) > 1 and held - self._pooled[0].stroke.duration >= self._memory:
-            held -= self._pooled.popleft().stroke.duration
+        self._seen += segment.duration
+        self._pooled.append(_Pooled(segment, []))
+        held = sum(pooled.segment.duration for pooled in self._pooled)
+        while len(self._pooled) > 1 and held - self._pooled[0].segment.duration >= self._memory:
+            held -= self._pooled.popleft().segment.duration
         due = RELEARN * self._learnt if self._learnt < self._memory else self._learnt + self._memory
         if self._seen >= due:
             self._learnt = self._seen
-            residuals = [residual_of_stroke(pooled.stroke, self._orders[0]) for pooled in self._pooled]
+            residuals = [residual_of_segment(pooled.segment, self._orders[0]) for pooled in self._pooled]
             self._coefficients = learn_whitening(residuals)
             for pooled in self._pooled:
-                pooled.grams = self._grams(pooled.stroke)
+                pooled.grams = self._grams(pooled.segment)
         else:
-            self._pooled[-1].grams = self._grams(stroke)
+            self._pooled[-1].grams = self._grams(segment)
 
-    def _grams(self, stroke: Stroke) -> list[Gram | None]:
-        return [gram_of_stroke(stroke, orders, self._coefficients) for orders in self._orders]
+    def _grams(self, segment: JointSegment) -> list[Gram | None]:
+        return [gram_of_segment(segment, orders, self._coefficients) for orders in self._orders]
 
     def _groups(self) -> Iterator[tuple[str, list[_Pooled]]]:
-        """Strokes that are pooled coherently: by direction, or by time if there is one direction only."""
+        """Segments that are pooled coherently: by direction, or by time if there is one direction only."""
         names = {1: "forward", -1: "reverse"}
         heard = [pooled for pooled in self._pooled if pooled.grams[0] is not None]
-        total = sum(pooled.stroke.values.size for pooled in heard)
-        by_direction = {sign: [pooled for pooled in heard if pooled.stroke.direction == sign] for sign in names}
+        total = sum(pooled.segment.values.size for pooled in heard)
+        by_direction = {sign: [pooled for pooled in heard if pooled.segment.direction == sign] for sign in names}
         kept = {
             sign: group
             for sign, group in by_direction.items()
-            if sum(pooled.stroke.values.size for pooled in group) >= max(LEAST_SHARE * total, 1)
+            if sum(pooled.segment.values.size for pooled in group) >= max(LEAST_SHARE * total, 1)
         }
         for sign, group in kept.items():
             if len(kept) == 2 or len(group) < 2:
@@ -182,7 +182,7 @@ class SensorlessIdentifier:
             DirectionEvidence.of(name, estimate, self._ratio, len(group)) for name, group, estimate in estimates
         )
         if not estimates:
-            still = all(np.ptp(pooled.stroke.values) == 0.0 for pooled in self._pooled)
+            still = all(np.ptp(pooled.segment.values) == 0.0 for pooled in self._pooled)
             return self._nothing((STILL,)) if still else self._latest
         pairs = [estimate for _, _, estimate in estimates]
         mean, covariance = _mean_amplitudes(pairs)
@@ -194,7 +194,7 @@ class SensorlessIdentifier:
         strongest = max(pairs, key=lambda pair: pair.explained)
         phases = strongest.phasors / np.maximum(np.abs(strongest.phasors), 1e-300)
         noise = float(np.mean([pair.noise**2 for pair in pairs]))
-        angles = np.concatenate([pooled.stroke.angle for _, group, _ in estimates for pooled in group])
+        angles = np.concatenate([pooled.segment.angle for _, group, _ in estimates for pooled in group])
         return Identification(
             circular_spline=np.array([cs * phases[0]]),
             flexspline=np.array([fs * phases[1]]),
@@ -210,7 +210,7 @@ class SensorlessIdentifier:
             doubts=doubts_about(
                 LinePair(float(cs), float(fs)),
                 self._reducer,
-                one_speed=one_speed(pooled.stroke for pooled in self._pooled),
+                one_speed=one_speed(pooled.segment for pooled in self._pooled),
                 too_fast=self._too_fast,
             ),
             blockers=self._other_teeth(groups, pairs)

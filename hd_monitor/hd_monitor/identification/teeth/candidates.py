@@ -30,7 +30,7 @@ MOTOR_REACH = 4
 
 _STANDS_OUT = 5.0  # medians of the spectrum: 3e-8 by chance
 _LOWEST_ORDER = 20  # gravity, friction and the load's own orders lie below
-_PLACEBOS = 8.0  # orders on either side that the noise floor is taken from
+_REFERENCES = 8.0  # orders on either side that the noise floor is taken from
 _MOST, _MOST_BLURRED = 2, 4
 
 
@@ -119,7 +119,7 @@ def _like(given: Reducer, flexspline_teeth: int) -> Reducer:
 def _found(signal: OrderSpectrum, reducer: Reducer, given: Reducer, k: int) -> tuple[float, ...]:
     """Orders of the k-th pair at which a line was found: both, or the one that travel cannot part from the other."""
     pair = LinePair(*(k * order for order in reducer.output_orders))
-    if pair.flexspline + _PLACEBOS > HIGHEST_ORDER:
+    if pair.flexspline + _REFERENCES > HIGHEST_ORDER:
         return ()
     if any(_beside_motor(order, given) for order in pair):
         return ()
@@ -141,7 +141,7 @@ def _chances(signal: OrderSpectrum, lines: tuple[float, ...], given: Reducer) ->
     """Probability for each line that noise alone makes it this large; 1 where the travel does not determine it."""
     low, high = min(lines), max(lines)
     apart = max(1.0, 0.5 / signal.turns)
-    offsets = 0.5 * np.arange(1.0, 2.0 * _PLACEBOS * apart + 1.0)
+    offsets = 0.5 * np.arange(1.0, 2.0 * _REFERENCES * apart + 1.0)
     around = np.concatenate([low - offsets[::-1], high + offsets])
     own = _given_lines(given)
     near = own[(own > around[0]) & (own < around[-1]) & (np.abs(np.subtract.outer(own, lines)).min(axis=1) > 1e-6)]
@@ -149,8 +149,10 @@ def _chances(signal: OrderSpectrum, lines: tuple[float, ...], given: Reducer) ->
     if signal.turns < 1.0:
         nuisance = near if signal.turns > 0.5 else np.zeros(0)
     taken = np.concatenate([np.asarray(lines), nuisance])
-    placebos = around[(np.abs(np.subtract.outer(around, taken)).min(axis=1) > 0.4) & (around > 2.0)]
-    orders = PairOrders(lines=np.asarray(lines), nuisance=nuisance, placebos=placebos, trend=0.0, separation=2.0)
+    reference_orders = around[(np.abs(np.subtract.outer(around, taken)).min(axis=1) > 0.4) & (around > 2.0)]
+    orders = PairOrders(
+        lines=np.asarray(lines), nuisance=nuisance, reference_orders=reference_orders, trend=0.0, separation=2.0
+    )
     fit = solve_lines(_arranged(signal, orders), orders)
     if fit is None:
         return (1.0,) * len(lines)
@@ -165,7 +167,7 @@ def _chances(signal: OrderSpectrum, lines: tuple[float, ...], given: Reducer) ->
 
 def _arranged(signal: OrderSpectrum, orders: PairOrders) -> FloatArray:
     """Inner products in the order that the fit of lines expects: each group's cosines, then its sines."""
-    groups = (orders.lines, orders.nuisance, orders.placebos)
+    groups = (orders.lines, orders.nuisance, orders.reference_orders)
     every = np.concatenate(groups)
     place, start = [], 0
     for group in groups:

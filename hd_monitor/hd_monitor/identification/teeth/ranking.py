@@ -10,7 +10,7 @@ import numpy as np
 from ...acquisition.record import JointSamples, Record
 from ...errors import ParameterError
 from ...orders.gram import Gram, PairOrders
-from ...orders.joint_segment import Stroke, StrokeCutter, one_speed, samples_of_records
+from ...orders.joint_segment import JointSegment, JointSegmentCutter, one_speed, samples_of_records
 from ...orders.pair import CHANCE, line_chances
 from ...orders.scan import OrderScan
 from ...reducer import WAVE_GENERATOR_LOBES, LinePair
@@ -130,28 +130,28 @@ def rank_tooth_pairs(
     else:
         samples, source = samples_of_records(data), "joint_effort"
     span = float(min(pair.flexspline for pair in pairs)), float(max(pair.circular_spline for pair in pairs))
-    cutter = StrokeCutter(source, span, minimum_speed)
-    strokes = cutter.add(samples) + cutter.finish()
-    scan = OrderScan(strokes, orders)
-    rankings = [_rank(pairs, scan, scan.by_direction(), strokes)]
+    cutter = JointSegmentCutter(source, span, minimum_speed)
+    segments = cutter.add(samples) + cutter.finish()
+    scan = OrderScan(segments, orders)
+    rankings = [_rank(pairs, scan, scan.by_direction(), segments)]
     if not rankings[0].conclusive and any(found.lines_found for found in rankings[0].ranked):
-        # Amplitudes and phases that change with the speed, as near a resonance, do not add up over strokes.
+        # Amplitudes and phases that change with the speed, as near a resonance, do not add up over segments.
         parts = scan.by_parts()
-        rankings += [_rank(pairs, scan, parts, strokes)] if parts else []
+        rankings += [_rank(pairs, scan, parts, segments)] if parts else []
     return max(rankings, key=lambda ranking: (ranking.conclusive, ranking.ranked[0].log_evidence))
 
 
 def _rank(
-    pairs: Sequence[ToothPair], scan: OrderScan, parts: Sequence[Gram], strokes: Sequence[Stroke]
+    pairs: Sequence[ToothPair], scan: OrderScan, parts: Sequence[Gram], segments: Sequence[JointSegment]
 ) -> ToothPairRanking:
-    """Rank with the strokes pooled in these parts."""
+    """Rank with the segments pooled in these parts."""
     ranked = sorted(
         (_evidence(pair, scan, parts) for pair in pairs), key=lambda found: (-found.log_evidence, found.teeth)
     )
-    travel = float(np.ptp(np.concatenate([stroke.angle for stroke in strokes]))) if strokes else 0.0
+    travel = float(np.ptp(np.concatenate([segment.angle for segment in segments]))) if segments else 0.0
     margin = ranked[0].log_evidence - ranked[1].log_evidence if len(ranked) > 1 else math.inf
     best = ranked[0]
-    speed = one_speed(strokes)
+    speed = one_speed(segments)
     as_pair = _odds_as_pair(best.teeth, scan, parts) if best.lines_found else 0.0
     clear = best.lines_found == 2 and min(margin, as_pair) >= MARGIN
     return ToothPairRanking(
@@ -176,8 +176,8 @@ def _lines(pair: ToothPair, k: float) -> LinePair:
 
 def _surroundings(pair: ToothPair) -> tuple[int, int]:
     """Lowest and highest order that the fit of a pair looks at."""
-    lowest = PairOrders.around(_lines(pair, 0.5)).placebos.min()
-    return math.floor(lowest), math.ceil(PairOrders.around(_lines(pair, 1.0)).placebos.max())
+    lowest = PairOrders.around(_lines(pair, 0.5)).reference_orders.min()
+    return math.floor(lowest), math.ceil(PairOrders.around(_lines(pair, 1.0)).reference_orders.max())
 
 
 def _evidence(pair: ToothPair, scan: OrderScan, parts: Sequence[Gram]) -> ToothPairEvidence:
@@ -214,7 +214,7 @@ def _between(pair: ToothPair) -> range:
 
 
 def _around(lines: LinePair, only: float | None = None) -> PairOrders:
-    """The pair with its placebo orders, or a single line in its place."""
+    """The pair with its reference orders, or a single line in its place."""
     orders = PairOrders.around(lines)
     return orders if only is None else replace(orders, lines=np.array([float(only)]))
 

@@ -13,14 +13,14 @@ from ...errors import ParameterError
 from ...model.parameters import Dynamics
 from ...reducer import Reducer
 from ..fit.gauss_newton import Fit, Problem
-from ..fit.information import Knowledge
+from ..fit.information import Information
 from ..fit.linearisation import Predictor
 from ..fit.multistart import signal_level
 from ..fit.unknowns import Unknowns
-from ..segment.segment import Stretch, StretchBuilder
+from ..segment.segment import Segment, SegmentBuilder
 
 LONGEST = 1.5
-"""Motion [s] of the oldest and of the newest stretch that a trial looks at: far apart, few samples tell orders."""
+"""Motion [s] of the oldest and of the newest segment that a trial looks at: far apart, few samples tell orders."""
 
 _ROUNDS = 4
 
@@ -46,13 +46,13 @@ class ToothTrial:
 
     Attributes
     ----------
-    stretches : sequence of Stretch
+    segments : sequence of Segment
         Recent motion as prepared for the fit with the given teeth; its oldest and its newest part are used.
     given : Dynamics
     unknowns : Unknowns
     active : ndarray of bool, shape (unknowns,)
         Unknowns that may move with the teeth given.
-    prior : Knowledge
+    prior : Information
     reference_torque : float
         [N·m]
     values : ndarray, shape (unknowns,)
@@ -63,11 +63,11 @@ class ToothTrial:
         Whether the sensor also feels gravity.
     """
 
-    stretches: Sequence[Stretch]
+    segments: Sequence[Segment]
     given: Dynamics
     unknowns: Unknowns
     active: BoolArray
-    prior: Knowledge
+    prior: Information
     reference_torque: float
     values: FloatArray
     load_starts: Sequence[complex]
@@ -88,7 +88,7 @@ class ToothTrial:
         known = [fit for fit in fits if fit is not None]
         if own is None or not known:
             return (Lead(-math.inf, 0.0),) * len(others)
-        band = min(item.stretch.highest_frequency for fit in (own, *known) for item in fit.evidence)
+        band = min(item.segment.highest_frequency for fit in (own, *known) for item in fit.segments)
         power, freedom = _power(own, band)
         leads = []
         for fit in fits:
@@ -112,7 +112,7 @@ class ToothTrial:
 
     def _fit(self, reducer: Reducer, active: BoolArray, starts: Sequence[FloatArray] | None) -> Fit | None:
         """Fit teeth from some starts, or from the best values known; None where that is not possible."""
-        builder = StretchBuilder(
+        builder = SegmentBuilder(
             reducer=reducer,
             harmonics=self.unknowns.harmonics,
             load_orders=self.unknowns.load_orders,
@@ -121,27 +121,27 @@ class ToothTrial:
             keep_tones=True,  # at one speed they may be these teeth's lines
         )
         try:
-            stretches = [builder.build([record], None) for record in self._records()]
+            segments = [builder.build([record], None) for record in self._records()]
         except ParameterError:
             return None  # these teeth's lines are too fast for the sampling rate
         problem = Problem(
-            stretches=stretches,
+            segments=segments,
             predictor=Predictor(unknowns=self.unknowns, given=self.given, reference_torque=self.reference_torque),
             prior=self.prior,
-            floor=signal_level(stretches),
+            floor=signal_level(segments),
             active=active,
         )
         try:
             if starts is None:
                 return problem.solve(self.values, rounds=_ROUNDS)
-            return problem.explore(starts, rounds=_ROUNDS)[1]
+            return problem.multistart(starts, rounds=_ROUNDS)[1]
         except (FloatingPointError, np.linalg.LinAlgError):
             return None
 
     def _records(self) -> list[Record]:
         """The oldest and the newest part of the motion."""
-        oldest, newest = self.stretches[0], self.stretches[-1]
-        if len(self.stretches) == 1:
+        oldest, newest = self.segments[0], self.segments[-1]
+        if len(self.segments) == 1:
             return [_cut(newest, slice(0, round(2.0 * LONGEST / newest.period)))]
         return [
             _cut(oldest, slice(0, round(LONGEST / oldest.period))),
@@ -149,15 +149,15 @@ class ToothTrial:
         ]
 
 
-def _cut(stretch: Stretch, part: slice) -> Record:
-    """A part of a stretch, as a record."""
+def _cut(segment: Segment, part: slice) -> Record:
+    """A part of a segment, as a record."""
     return Record(
-        start=stretch.start,
-        period=stretch.period,
-        acceleration=np.where(stretch.used, stretch.acceleration, np.nan)[part],
-        angle=stretch.angle[part],
-        speed=stretch.speed[part],
-        torque=stretch.at_steps.torque[:: stretch.substeps][part],
+        start=segment.start,
+        period=segment.period,
+        acceleration=np.where(segment.used, segment.acceleration, np.nan)[part],
+        angle=segment.angle[part],
+        speed=segment.speed[part],
+        torque=segment.at_steps.torque[:: segment.substeps][part],
     )
 
 
@@ -170,10 +170,10 @@ def _level(fit: Fit) -> float:
 def _power(fit: Fit, band: float) -> tuple[float, float]:
     """What a fit leaves up to a frequency [Hz]: sum of squares times sample periods, and its degrees of freedom."""
     power = freedom = 0.0
-    for item in fit.evidence:
-        stretch = item.stretch
-        seen = stretch.frequencies <= band
+    for item in fit.segments:
+        segment = item.segment
+        seen = segment.frequencies <= band
         left = item.residual.reshape(2, -1)[:, seen]
-        power += stretch.period * float(np.sum(left**2))
-        freedom += 2.0 * float(np.count_nonzero(seen)) * stretch.fill
+        power += segment.period * float(np.sum(left**2))
+        freedom += 2.0 * float(np.count_nonzero(seen)) * segment.fill
     return max(power, 1e-300), max(freedom, 1.0)

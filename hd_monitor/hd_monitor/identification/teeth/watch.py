@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 from ...model.parameters import Dynamics
-from ...orders.spectrum import OrderSpectrum, with_stretch
+from ...orders.spectrum import OrderSpectrum, with_segment
 from ...reducer import Reducer
 from ..fit.gauss_newton import Fit
 from .candidates import APART, ToothSuspect, tooth_suspects, unexplained
@@ -54,11 +54,11 @@ class ToothWatch:
     rival: ToothSuspect | None = None
 
     def after(self, fit: Fit, dynamics: Dynamics, *, anew: bool) -> "ToothWatch":
-        """Add the stretches of a fit; forget those before if it was made anew of all at hand."""
+        """Add the segments of a fit; forget those before if it was made anew of all at hand."""
         signal, residual = (OrderSpectrum(), OrderSpectrum()) if anew else (self.signal, self.residual)
-        for item in fit.evidence:
-            signals = item.stretch.acceleration, item.linearisation.residual
-            signal, residual = with_stretch((signal, residual), item.stretch, signals, dynamics)
+        for item in fit.segments:
+            signals = item.segment.acceleration, item.linearisation.residual
+            signal, residual = with_segment((signal, residual), item.segment, signals, dynamics)
         return replace(self, signal=signal, residual=residual)
 
     def faded(self, keep: float) -> "ToothWatch":

@@ -12,14 +12,14 @@ from ...settings import JointSettings
 from ..checks.coverage import Coverage
 from ..checks.limitations import Scrutiny, Suspect
 from ..checks.residual import LineResidual
-from ..fit.information import Knowledge
+from ..fit.information import Information
 from ..fit.linearisation import Predictor
 from ..fit.noise import NoiseFloor
-from ..fit.normal_equations import Evidence
-from ..fit.score_test import Score
+from ..fit.normal_equations import LinearisedSegment
+from ..fit.score_test import ScoreTest
 from ..fit.unknowns import Unknowns
 from ..result import Identification
-from ..segment.segment import Stretch
+from ..segment.segment import Segment
 from .indexes import stiffness_indexes
 
 WELL_KNOWN = 0.02
@@ -56,19 +56,19 @@ class Conclusions:
         predictor: Predictor,
         values: FloatArray,
         active: BoolArray,
-        knowledge: Knowledge,
-        scores: Mapping[int, Score],
+        information: Information,
+        scores: Mapping[int, ScoreTest],
         misfit: LineResidual,
         coverage: Coverage,
-        recent: Sequence[Stretch],
-        evidence: Sequence[Evidence],
+        recent: Sequence[Segment],
+        evidence: Sequence[LinearisedSegment],
         floor: NoiseFloor,
         relative: bool,
     ) -> Identification:
         """Pack the result."""
         u = self._unknowns
-        inflation = max(misfit.inflation(coverage.span), misfit.scatter.inflation)
-        noise = inflation * knowledge.covariance(active)
+        inflation = max(misfit.inflation(coverage.span), misfit.overdispersion.inflation)
+        noise = inflation * information.covariance(active)
         systematic = self._systematic(values, misfit, coverage)
         covariance = noise + systematic
         indexes = stiffness_indexes(u, values, noise, systematic)
@@ -149,8 +149,8 @@ def _of_phasors(covariance: FloatArray, part: slice) -> FloatArray:
     return np.asarray(own[places[:, :, None], places[:, None, :]])
 
 
-def _signal_to_noise(evidence: Sequence[Evidence]) -> float:
+def _signal_to_noise(evidence: Sequence[LinearisedSegment]) -> float:
     """Power of the predicted vibration over that of the residual [dB], in the band that was fitted."""
-    explained = sum(float(np.sum(e.stretch.transform(e.linearisation.predicted[:, None]) ** 2)) for e in evidence)
+    explained = sum(float(np.sum(e.segment.transform(e.linearisation.predicted[:, None]) ** 2)) for e in evidence)
     residual = sum(float(np.sum(e.residual**2)) for e in evidence)
     return 10.0 * math.log10(max(explained, 1e-300) / max(residual, 1e-300))

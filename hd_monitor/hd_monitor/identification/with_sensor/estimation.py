@@ -14,24 +14,24 @@ from ...settings import JointSettings
 from ..checks.coverage import Coverage
 from ..checks.residual import LineResidual
 from ..fit.gauss_newton import Fit, Problem
-from ..fit.information import Knowledge
+from ..fit.information import Information
 from ..fit.linearisation import Predictor
 from ..fit.multistart import (
     START_LOADS,
-    explore_newest,
     is_better,
     load_starts,
-    newest_stretches,
+    multistart_newest,
+    newest_segments,
     other_starts,
     signal_level,
 )
 from ..fit.noise import NoiseFloor
-from ..fit.normal_equations import Evidence
-from ..fit.score_test import Score, scores
+from ..fit.normal_equations import LinearisedSegment
+from ..fit.score_test import ScoreTest, score_tests
 from ..fit.unknowns import Unknowns
 from ..result import Identification
 from ..segment.preparation import Preparation
-from ..segment.segment import Stretch
+from ..segment.segment import Segment
 from ..teeth.trial import ToothTrial
 from ..teeth.watch import ToothWatch
 from .conclusion import Conclusions
@@ -41,7 +41,7 @@ LOAD_ORDERS = (1, 2)
 """Cycles per output revolution of unknown load fluctuations: gravity, and the one that mimics the other spline."""
 
 WINDOW = 16.0
-"""Motion [s] that is kept to be fitted anew as a whole; from then on each stretch is used once."""
+"""Motion [s] that is kept to be fitted anew as a whole; from then on each segment is used once."""
 
 CONTRADICTION = 4.5
 """Standard deviations by which data must contradict what was given before it is estimated, too."""
@@ -52,12 +52,12 @@ FREQUENCY_KNOWN, DAMPING_KNOWN = 0.005, 0.05
 _TURNED = 0.3  # part of the misfit that may be left once the sensor's sign is turned
 _SLIP = 0.5  # of the top speed, by which velocities may differ from the change of the positions (root mean square)
 _ROUNDS, _FEW_ROUNDS = 8, 4
-_MOVED = 3.0  # standard deviations by which values may move before earlier stretches are linearised anew
+_MOVED = 3.0  # standard deviations by which values may move before earlier segments are linearised anew
 _YOUNG = 10.0  # s of motion before which a look for other solutions tries all starts
 
 
 class Estimation:
-    """Estimates the unknowns of one reducer from stretches.
+    """Estimates the unknowns of one reducer from segments.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ class Estimation:
     seconds : float
         Motion used [s].
     unusable : str
-        Why the newest stretch that could not be used could not; empty if all were.
+        Why the newest segment that could not be used could not; empty if all were.
     """
 
     def __init__(self, settings: JointSettings) -> None:
@@ -80,14 +80,14 @@ class Estimation:
         self._memory: float = settings["analysis.memory"]
         self._unknowns = u = Unknowns(harmonics=settings["analysis.harmonics"], load_orders=LOAD_ORDERS)
         self._std = u.given_std()
-        self._prior = Knowledge.gaussian(self._std)
+        self._prior = Information.gaussian(self._std)
         self._preparation = Preparation(settings, u, self._prior)
-        self._learnt = Knowledge.none(u.size)
+        self._learnt = Information.none(u.size)
         self._predictor: Predictor | None = None
         self._values = u.zero()
         self._active = u.mask(u.stiffness, u.load, u.inertia)
-        self._recent: list[Stretch] = []
-        self._known: dict[Stretch, Evidence] = {}
+        self._recent: list[Segment] = []
+        self._known: dict[Segment, LinearisedSegment] = {}
         self._fitted_anew = 0.0
         self._floor: NoiseFloor | None = None
         self._line_residual = LineResidual.empty(u.harmonics)
@@ -107,7 +107,7 @@ class Estimation:
         return self._conclusions.sureness(self.result)
 
     def take(self, records: Sequence[Record]) -> None:
-        """Use a stretch, given as records that follow each other; one that defies all arithmetic is left out."""
+        """Use a segment, given as records that follow each other; one that defies all arithmetic is left out."""
         kept = copy.copy(self)
         kept._recent, kept._preparation = list(self._recent), copy.copy(self._preparation)
         try:
@@ -118,18 +118,18 @@ class Estimation:
             self.unusable = str(error)
 
     def _use(self, records: Sequence[Record]) -> None:
-        stretch = self._preparation.build(records)
-        values = stretch.acceleration[stretch.used]
-        slip = np.diff(stretch.angle) / stretch.period - 0.5 * (stretch.speed[1:] + stretch.speed[:-1])
-        if float(np.mean(slip**2)) > (_SLIP * float(np.abs(stretch.speed).max())) ** 2:
+        segment = self._preparation.build(records)
+        values = segment.acceleration[segment.used]
+        slip = np.diff(segment.angle) / segment.period - 0.5 * (segment.speed[1:] + segment.speed[:-1])
+        if float(np.mean(slip**2)) > (_SLIP * float(np.abs(segment.speed).max())) ** 2:
             raise ParameterError("positions and velocities of the joint contradict each other: check joint_states")
         if values.size < 4 * self._unknowns.size or float(np.ptp(values)) == 0.0:
             return
         if self._preparation.nominal_torque is not None:
             self._active = self._active | self._unknowns.mask(self._unknowns.torque)
-        self.seconds += stretch.duration
-        self._coverage = self._coverage.plus(stretch)
-        self._recent.append(stretch)
+        self.seconds += segment.duration
+        self._coverage = self._coverage.plus(segment)
+        self._recent.append(segment)
         while sum(s.duration for s in self._recent[1:]) >= WINDOW:
             self._recent.pop(0)
         fit = self._fit()
@@ -149,49 +149,49 @@ class Estimation:
             floor, rest = self._rest(fit)
         self._values, self._floor, self._line_residual = fit.values, floor, rest
         self._learnt = self._learnt.plus(fit.equations, fit.values)
-        known = self._known | {item.stretch: item for item in fit.evidence}
+        known = self._known | {item.segment: item for item in fit.segments}
         at_hand = self._recent if self.seconds <= WINDOW else []
-        self._known = {stretch: known[stretch] for stretch in at_hand if stretch in known}
+        self._known = {segment: known[segment] for segment in at_hand if segment in known}
         self._question_teeth(fit)
         self._conclude(fit)
-        self.age(sum(item.stretch.duration for item in fit.evidence))
+        self.age(sum(item.segment.duration for item in fit.segments))
 
-    def _problem(self, stretches: Sequence[Stretch], prior: Knowledge) -> Problem:
+    def _problem(self, segments: Sequence[Segment], prior: Information) -> Problem:
         if self._predictor is None:
-            level = self._preparation.reference_torque(stretches)
+            level = self._preparation.reference_torque(segments)
             self._predictor = Predictor(unknowns=self._unknowns, given=self._given, reference_torque=level)
         return Problem(
-            stretches=stretches,
+            segments=segments,
             predictor=self._predictor,
             prior=prior,
-            floor=signal_level(stretches) if self._floor is None else self._floor,
+            floor=signal_level(segments) if self._floor is None else self._floor,
             active=self._active,
         )
 
     # Fitting -------------------------------------------------------------------------------------------------------
 
     def _fit(self) -> Fit:
-        """Fit the newest stretch on top of what is learnt; every now and then all anew, while all are at hand."""
+        """Fit the newest segment on top of what is learnt; every now and then all anew, while all are at hand."""
         young = self.seconds <= WINDOW
         if self._floor is None:
             self._schedule = self._schedule.with_look(self.seconds)
             problem = self._anew()
-            small, best = explore_newest(problem, [self._values], rounds=_FEW_ROUNDS)
+            small, best = multistart_newest(problem, [self._values], rounds=_FEW_ROUNDS)
             return self._follow(problem, small, [best], _FEW_ROUNDS)
         if young and self.seconds >= 2.0 * self._fitted_anew:
             return self._anew().solve_near(self._values, self._known, rounds=_ROUNDS)
         fit = self._problem(self._recent[-1:], self._prior + self._learnt).solve(self._values, rounds=3)
         change = fit.values - self._values
-        if young and float(change @ self._learnt.information @ change) > _MOVED**2:
+        if young and float(change @ self._learnt.matrix @ change) > _MOVED**2:
             fit = self._anew().solve_near(
-                fit.values, self._known | {e.stretch: e for e in fit.evidence}, rounds=_ROUNDS
+                fit.values, self._known | {e.segment: e for e in fit.segments}, rounds=_ROUNDS
             )
         return fit
 
     def _anew(self) -> Problem:
-        """Return the problem of all recent stretches, and forget what was learnt of them and others."""
+        """Return the problem of all recent segments, and forget what was learnt of them and others."""
         self._fitted_anew = self.seconds
-        self._learnt = Knowledge.none(self._unknowns.size)
+        self._learnt = Information.none(self._unknowns.size)
         return self._problem(self._recent, self._prior)
 
     @staticmethod
@@ -209,11 +209,11 @@ class Estimation:
         """
         u = self._unknowns
         given = self._active & ~u.mask(u.frequency, u.damping, u.delay)
-        turned = [stretch.mirrored() for stretch in self._recent]
+        turned = [segment.mirrored() for segment in self._recent]
         start = np.where(given, fit.values, 0.0) * np.where(u.mask(u.stiffness), -1.0, 1.0)
         mirrored = replace(self._problem(turned, self._prior), active=given)
-        small, best = explore_newest(mirrored, load_starts(u, start, thorough=True), rounds=_ROUNDS)
-        as_it_is = replace(small, stretches=newest_stretches(self._recent))
+        small, best = multistart_newest(mirrored, load_starts(u, start, thorough=True), rounds=_ROUNDS)
+        as_it_is = replace(small, segments=newest_segments(self._recent))
         if not is_better(as_it_is, best, fit.values):
             return fit
         kept = self._recent, self._active, self._learnt, self._fitted_anew
@@ -227,9 +227,9 @@ class Estimation:
         return other
 
     def _look_elsewhere(self, fit: Fit) -> Fit:
-        """Try other solutions on the newest stretches: the fit leaves more at the lines than noise could.
+        """Try other solutions on the newest segments: the fit leaves more at the lines than noise could.
 
-        If later none is better there, the fit stays as it is, and no effort goes into all recent stretches.
+        If later none is better there, the fit stays as it is, and no effort goes into all recent segments.
         """
         u, kept = self._unknowns, self._active
         self._active = self._active & ~u.mask(u.frequency, u.damping, u.delay)
@@ -241,7 +241,7 @@ class Estimation:
         thorough, self._schedule = self.seconds < _YOUNG, self._schedule.with_look(self.seconds)
         starts = load_starts(u, np.where(self._active, fit.values, 0.0), thorough=thorough)
         starts += other_starts(u, frequency=self._refine, delay=lag, thorough=thorough)
-        small, best = explore_newest(self._problem(self._recent, self._prior), starts, rounds=_ROUNDS)
+        small, best = multistart_newest(self._problem(self._recent, self._prior), starts, rounds=_ROUNDS)
         if thorough:
             return self._follow(self._anew(), small, [best.values, starts[0]], _ROUNDS)
         if is_better(small, best, fit.values):
@@ -254,9 +254,9 @@ class Estimation:
         u = self._unknowns
         candidates = [u.delay, u.frequency, u.damping] if self._refine else [u.delay]
         for _ in candidates:
-            knowledge = (self._prior + self._learnt).plus(fit.equations, fit.values)
+            information = (self._prior + self._learnt).plus(fit.equations, fit.values)
             waiting = [place for place in candidates if not self._active[place]]
-            asked = self._scores(waiting, knowledge, fit.values)
+            asked = self._scores(waiting, information, fit.values)
             wrong = [place for place in waiting if asked[place].significance > CONTRADICTION]
             if self._coverage.speed_varies:
                 known = ((u.frequency, FREQUENCY_KNOWN), (u.damping, DAMPING_KNOWN))
@@ -265,15 +265,15 @@ class Estimation:
                 break
             worst = max(wrong, key=lambda place: asked[place].significance)
             self._active = self._active | u.mask(worst)
-            stretches = [item.stretch for item in fit.evidence]
-            fit = self._problem(stretches, self._prior + self._learnt).solve(fit.values, rounds=_ROUNDS)
+            segments = [item.segment for item in fit.segments]
+            fit = self._problem(segments, self._prior + self._learnt).solve(fit.values, rounds=_ROUNDS)
         return fit
 
     def _question_teeth(self, fit: Fit) -> None:
         """Ask whether other tooth numbers than those given explain the recent motion better."""
         assert self._predictor is not None
         trial = ToothTrial(
-            stretches=self._recent,
+            segments=self._recent,
             given=self._given,
             unknowns=self._unknowns,
             active=self._active,
@@ -291,8 +291,8 @@ class Estimation:
             one_speed=not self._coverage.speed_varies,
         )
 
-    def _scores(self, places: Sequence[int], knowledge: Knowledge, values: FloatArray) -> dict[int, Score]:
-        return scores(places, knowledge, values, self._active, self._std)
+    def _scores(self, places: Sequence[int], information: Information, values: FloatArray) -> dict[int, ScoreTest]:
+        return score_tests(places, information, values, self._active, self._std)
 
     # Learning ------------------------------------------------------------------------------------------------------
 
@@ -302,7 +302,7 @@ class Estimation:
             floor, rest = fit.floor, LineResidual.empty(self._unknowns.harmonics)
         else:
             floor, rest = self._floor + fit.floor, self._line_residual
-        for item in fit.evidence:
+        for item in fit.segments:
             rest = rest.plus(item, fit.covariance, floor, self._reducer)
         return floor, rest
 
@@ -317,19 +317,19 @@ class Estimation:
 
     def _conclude(self, fit: Fit) -> None:
         u = self._unknowns
-        knowledge = self._prior + self._learnt
+        information = self._prior + self._learnt
         places = (u.frequency, u.damping, u.torque, u.delay)
         assert self._predictor is not None
         self.result = self._conclusions.conclude(
             predictor=self._predictor,
             values=fit.values,
             active=self._active,
-            knowledge=knowledge,
-            scores=self._scores(places, knowledge, fit.values),
+            information=information,
+            scores=self._scores(places, information, fit.values),
             misfit=self._line_residual,
             coverage=self._coverage,
             recent=self._recent,
-            evidence=fit.evidence,
+            evidence=fit.segments,
             floor=self._floor or fit.floor,
             relative=self._preparation.nominal_torque is not None,
         )

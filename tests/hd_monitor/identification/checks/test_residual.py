@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from hd_monitor.acquisition.record import Record
-from hd_monitor.identification.checks.residual import LineResidual, Scatter
+from hd_monitor.identification.checks.residual import LineResidual, Overdispersion
 from hd_monitor.identification.fit.gauss_newton import Problem
-from hd_monitor.identification.fit.information import Knowledge
+from hd_monitor.identification.fit.information import Information
 from hd_monitor.identification.fit.linearisation import Predictor
 from hd_monitor.identification.fit.noise import NoiseFloor
 from hd_monitor.identification.fit.unknowns import Unknowns
-from hd_monitor.identification.segment.segment import StretchBuilder
+from hd_monitor.identification.segment.segment import SegmentBuilder
 from hd_monitor.model import Dynamics
 from hd_monitor.reducer import Reducer
 
@@ -18,20 +18,20 @@ REDUCER = Reducer()
 UNKNOWNS = Unknowns(harmonics=2, load_orders=(2,))
 RATE, NOISE, TORQUE = 400.0, 0.2, 10.0  # Hz, too low to be reduced; rad/s²; N·m
 FLOOR = NoiseFloor.white(2.0 * NOISE**2 / RATE)
-BUILDER = StretchBuilder(reducer=REDUCER, harmonics=2, load_orders=(2,), natural_frequency=55.0)
+BUILDER = SegmentBuilder(reducer=REDUCER, harmonics=2, load_orders=(2,), natural_frequency=55.0)
 PREDICTOR = Predictor(unknowns=UNKNOWNS, given=Dynamics(), reference_torque=TORQUE)
 FITTED = UNKNOWNS.mask(UNKNOWNS.stiffness, UNKNOWNS.load)
 TRUTH = UNKNOWNS.zero()
 TRUTH[UNKNOWNS.stiffness] = [0.03, 0.01, 0.0, 0.02, 0.05, 0.0, 0.01, -0.02]
-SECONDS, STRETCHES = 1.0, 8
-TIMES = np.arange(int(SECONDS * STRETCHES * RATE)) / RATE
+SECONDS, SEGMENTES = 1.0, 8
+TIMES = np.arange(int(SECONDS * SEGMENTES * RATE)) / RATE
 SPEED = 900.0 * 2.0 * np.pi / 60.0 / 80.0  # rad/s: one and a half output turns; lines at 30 and 60 Hz
 ANGLE = SPEED * TIMES
 
 
-def stretches(acceleration):
+def segments(acceleration):
     parts = []
-    for values, angle in zip(np.split(acceleration, STRETCHES), np.split(ANGLE, STRETCHES), strict=True):
+    for values, angle in zip(np.split(acceleration, SEGMENTES), np.split(ANGLE, SEGMENTES), strict=True):
         record = Record(
             start=0.0,
             period=1.0 / RATE,
@@ -46,8 +46,8 @@ def stretches(acceleration):
 
 @pytest.fixture(scope="module")
 def clean():
-    """Vibration of the truth; every stretch begins at rest, which is one of the free vibrations that are fitted."""
-    return np.concatenate([PREDICTOR.linearise(s, TRUTH).predicted for s in stretches(np.ones(TIMES.size))])
+    """Vibration of the truth; every segment begins at rest, which is one of the free vibrations that are fitted."""
+    return np.concatenate([PREDICTOR.linearise(s, TRUTH).predicted for s in segments(np.ones(TIMES.size))])
 
 
 def noise(seed):
@@ -57,15 +57,15 @@ def noise(seed):
 def residual(signal):
     """What a fit leaves of a signal; the floor is known."""
     problem = Problem(
-        stretches=stretches(signal),
+        segments=segments(signal),
         predictor=PREDICTOR,
-        prior=Knowledge.gaussian(np.full(UNKNOWNS.size, 1.0)),
+        prior=Information.gaussian(np.full(UNKNOWNS.size, 1.0)),
         floor=FLOOR,
         active=FITTED,
     )
     fit = problem.solve(TRUTH, rounds=5)
     rest = LineResidual.empty(UNKNOWNS.harmonics)
-    for item in fit.evidence:
+    for item in fit.segments:
         rest = rest.plus(item, fit.covariance, FLOOR, REDUCER)
     return rest
 
@@ -76,25 +76,25 @@ def of_noise(clean):
 
 
 def test_the_scatter_of_noise_is_what_noise_leads_to_expect(of_noise):
-    squares, freedom = (sum(getattr(rest.scatter, name) for rest in of_noise) for name in ("squares", "freedom"))
-    # each of the 8 stretches is asked 10 unknowns, and all together have fixed 10: 2800 degrees of freedom, 2.7 %
-    assert freedom == pytest.approx(40 * 10 * (STRETCHES - 1), rel=0.02)
+    squares, freedom = (sum(getattr(rest.overdispersion, name) for rest in of_noise) for name in ("squares", "freedom"))
+    # each of the 8 segments is asked 10 unknowns, and all together have fixed 10: 2800 degrees of freedom, 2.7 %
+    assert freedom == pytest.approx(40 * 10 * (SEGMENTES - 1), rel=0.02)
     assert squares / freedom == pytest.approx(1.0, abs=0.08)
 
 
 def test_pure_noise_is_hardly_ever_inflated(of_noise):
-    assert np.mean([rest.scatter.inflation for rest in of_noise]) < 1.06
+    assert np.mean([rest.overdispersion.inflation for rest in of_noise]) < 1.06
     assert np.mean([rest.inflation(ANGLE[-1]) > 1.0 for rest in of_noise]) < 0.1
     # what the unknowns follow is no part of the residual any more
     assert 0.4 < np.mean([rest.misfit for rest in of_noise]) < 1.0
 
 
-def test_noise_that_comes_with_the_vibration_scatters_the_stretches(clean):
+def test_noise_that_comes_with_the_vibration_scatters_the_segments(clean):
     """Three per cent of slow noise on the amplitude: a quarter octave's floor would hardly see it."""
     rng = np.random.default_rng(7)
-    slow = np.repeat(rng.standard_normal(4 * STRETCHES), TIMES.size // (4 * STRETCHES))
+    slow = np.repeat(rng.standard_normal(4 * SEGMENTES), TIMES.size // (4 * SEGMENTES))
     rest = residual(clean * (1.0 + 0.03 * slow) + noise(8))
-    assert rest.scatter.inflation > 2.0
+    assert rest.overdispersion.inflation > 2.0
 
 
 def test_a_line_that_the_model_lacks_is_owned_up_to(clean):
@@ -107,15 +107,15 @@ def test_a_line_that_the_model_lacks_is_owned_up_to(clean):
 
 
 def test_fading_keeps_the_ratio_of_scatter_to_expectation():
-    scatter = Scatter(squares=300.0, freedom=100.0)
-    faded = scatter.faded(0.25)
+    overdispersion = Overdispersion(squares=300.0, freedom=100.0)
+    faded = overdispersion.faded(0.25)
     assert faded.squares / faded.freedom == pytest.approx(3.0)
-    assert 1.0 < faded.inflation < scatter.inflation < 3.0
+    assert 1.0 < faded.inflation < overdispersion.inflation < 3.0
 
 
 def test_nothing_seen_says_nothing():
     empty = LineResidual.empty(2)
     assert empty.misfit == 1.0
     assert empty.inflation(1.0) == 1.0
-    assert empty.scatter.inflation == 1.0
+    assert empty.overdispersion.inflation == 1.0
     assert empty.unexplained == 0.0

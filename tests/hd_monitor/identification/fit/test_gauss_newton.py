@@ -7,25 +7,25 @@ import pytest
 
 from hd_monitor.acquisition.record import Record
 from hd_monitor.identification.fit.gauss_newton import NEGLIGIBLE, Problem
-from hd_monitor.identification.fit.information import Knowledge
+from hd_monitor.identification.fit.information import Information
 from hd_monitor.identification.fit.linearisation import Predictor
 from hd_monitor.identification.fit.noise import NoiseFloor
 from hd_monitor.identification.fit.unknowns import Unknowns
-from hd_monitor.identification.segment.segment import StretchBuilder
+from hd_monitor.identification.segment.segment import SegmentBuilder
 from hd_monitor.model import Dynamics
 from hd_monitor.reducer import Reducer
 
 UNKNOWNS = Unknowns(harmonics=1, load_orders=(1, 2))
 RATE, TORQUE, NOISE = 500.0, 10.0, 0.1  # Hz, too low to be reduced; N·m; rad/s²
 PREDICTOR = Predictor(unknowns=UNKNOWNS, given=Dynamics(), reference_torque=TORQUE)
-BUILDER = StretchBuilder(reducer=Reducer(), harmonics=1, load_orders=(1, 2), natural_frequency=55.0)
+BUILDER = SegmentBuilder(reducer=Reducer(), harmonics=1, load_orders=(1, 2), natural_frequency=55.0)
 ACTIVE = UNKNOWNS.mask(UNKNOWNS.stiffness, UNKNOWNS.load)
 TRUTH = UNKNOWNS.zero()
 TRUTH[UNKNOWNS.stiffness] = [0.02, -0.01, 0.03, 0.05]
 TRUTH[UNKNOWNS.load] = [0.1, 0.0, 0.05, -0.1]
 
 
-def stretch(seed, seconds=2.0):
+def segment(seed, seconds=2.0):
     """A run-up from 600 to 1000 rpm with the vibration that the model predicts, and noise."""
     times = np.arange(round(seconds * RATE)) / RATE
     speed = np.linspace(600.0, 1000.0, times.size) * 2.0 * np.pi / 60.0 / 80.0
@@ -47,11 +47,11 @@ def stretch(seed, seconds=2.0):
     return built(line.predicted + noise)
 
 
-def problem(*stretches, prior=None):
+def problem(*segments, prior=None):
     return Problem(
-        stretches=stretches,
+        segments=segments,
         predictor=PREDICTOR,
-        prior=prior or Knowledge.gaussian(np.full(UNKNOWNS.size, 0.5)),
+        prior=prior or Information.gaussian(np.full(UNKNOWNS.size, 0.5)),
         floor=NoiseFloor.white(2.0 * NOISE**2 / RATE),
         active=ACTIVE,
     )
@@ -59,7 +59,7 @@ def problem(*stretches, prior=None):
 
 @pytest.fixture(scope="module")
 def fitted():
-    task = problem(stretch(1), stretch(2))
+    task = problem(segment(1), segment(2))
     return task, task.solve(UNKNOWNS.zero(), rounds=10)
 
 
@@ -76,7 +76,7 @@ def test_the_last_step_leads_where_a_simulation_says(fitted):
     there = task.at(fit.values)
     assert there.step_size < NEGLIGIBLE
     assert fit.cost == pytest.approx(there.cost, rel=1e-4)
-    for moved, simulated in zip(fit.evidence, there.evidence, strict=True):
+    for moved, simulated in zip(fit.segments, there.segments, strict=True):
         scale = np.linalg.norm(simulated.residual)
         assert np.linalg.norm(moved.residual - simulated.residual) < 0.01 * scale
 
@@ -96,10 +96,10 @@ def simulated(monkeypatch):
 
 
 def test_a_small_step_costs_a_single_simulation(fitted, simulated):
-    """Knowledge that is good already: the newest stretch is evaluated once."""
+    """Information that is good already: the newest segment is evaluated once."""
     _, fit = fitted
-    knowledge = Knowledge.none(UNKNOWNS.size).plus(fit.equations, fit.values)
-    task = problem(stretch(3, seconds=0.5), prior=knowledge)
+    information = Information.none(UNKNOWNS.size).plus(fit.equations, fit.values)
+    task = problem(segment(3, seconds=0.5), prior=information)
     simulated.clear()
     better = task.solve(fit.values, rounds=3)
     assert len(simulated) == 1
@@ -114,21 +114,21 @@ def test_a_start_that_was_simulated_is_not_simulated_again(fitted, simulated):
     assert louder.solve(there, rounds=0).cost < there.cost
     assert not simulated
     step = 1e-4 * ACTIVE
-    moved = replace(there, values=there.values + step, evidence=tuple(item.moved(step) for item in there.evidence))
+    moved = replace(there, values=there.values + step, segments=tuple(item.moved(step) for item in there.segments))
     louder.solve(moved, rounds=0)  # it was not simulated there
-    assert len(simulated) == len(task.stretches)
+    assert len(simulated) == len(task.segments)
 
 
 def test_what_is_known_nearby_saves_the_first_simulations(fitted, simulated):
     task, fit = fitted
     start = fit.values + 0.1 * (TRUTH != 0.0) * np.abs(TRUTH)
-    known = {item.stretch: item for item in task.at(fit.values).evidence}
+    known = {item.segment: item for item in task.at(fit.values).segments}
     simulated.clear()
     near = task.solve_near(start, known, rounds=10)
     saved = len(simulated)
     simulated.clear()
     far = task.solve(start, rounds=10)
-    assert saved == len(simulated) - len(task.stretches)
+    assert saved == len(simulated) - len(task.segments)
     apart = near.values - far.values
     assert apart @ far.equations.information @ apart < NEGLIGIBLE**2
 
@@ -141,7 +141,7 @@ def test_what_is_known_elsewhere_does_not_mislead(fitted, stiffness, load):
     task, fit = fitted
     elsewhere = UNKNOWNS.zero()
     elsewhere[UNKNOWNS.stiffness], elsewhere[UNKNOWNS.load] = stiffness, load
-    known = {item.stretch: item for item in task.at(elsewhere).evidence}
+    known = {item.segment: item for item in task.at(elsewhere).segments}
     near = task.solve_near(UNKNOWNS.zero(), known, rounds=12)
     information = fit.equations.information[np.ix_(ACTIVE, ACTIVE)]
     error = (near.values - fit.values)[ACTIVE]
@@ -149,14 +149,14 @@ def test_what_is_known_elsewhere_does_not_mislead(fitted, stiffness, load):
 
 
 def test_a_large_step_is_not_believed_without_a_simulation():
-    task = problem(stretch(4))
+    task = problem(segment(4))
     start = UNKNOWNS.zero()
     fit = task.solve(start, rounds=1)
     np.testing.assert_allclose(fit.cost, task.at(fit.values).cost, rtol=1e-9)
 
 
 def test_no_step_makes_the_stiffness_negative():
-    wild = problem(stretch(5), prior=Knowledge.gaussian(np.full(UNKNOWNS.size, 10.0)))
+    wild = problem(segment(5), prior=Information.gaussian(np.full(UNKNOWNS.size, 10.0)))
     start = UNKNOWNS.zero()
     start[UNKNOWNS.stiffness] = [0.35, 0.0, 0.0, 0.35]
     fit = wild.solve(start, rounds=8)

@@ -1,9 +1,9 @@
-"""Knowledge: information adds up, and its covariance is that of the values it leads to, faded or not."""
+"""Information: information adds up, and its covariance is that of the values it leads to, faded or not."""
 
 import numpy as np
 import pytest
 
-from hd_monitor.identification.fit.information import Knowledge
+from hd_monitor.identification.fit.information import Information
 from hd_monitor.identification.fit.normal_equations import NormalEquations
 
 SIZE = 4
@@ -17,69 +17,71 @@ def designs(seed=1, count=3, rows=30):
 
 
 def equations(design, values, data):
-    """Evidence of a linear model with noise of unit variance, linearised at some values."""
+    """LinearisedSegment of a linear model with noise of unit variance, linearised at some values."""
     residual = data - design @ values
     return NormalEquations(
         information=design.T @ design,
-        gradient=design.T @ residual,
+        score=design.T @ residual,
         cost=float(residual @ residual),
         freedom=float(len(data)),
     )
 
 
-def best(knowledge):
-    return np.linalg.solve(knowledge.information, knowledge.vector)
+def best(information):
+    return np.linalg.solve(information.matrix, information.vector)
 
 
 def test_pieces_linearised_at_different_places_give_the_least_squares_solution():
     rng = np.random.default_rng(2)
     blocks = designs()
     data = [design @ TRUTH + rng.standard_normal(len(design)) for design in blocks]
-    knowledge = Knowledge.none(SIZE)
+    information = Information.none(SIZE)
     for place, (design, values) in enumerate(zip(blocks, data, strict=True)):
-        knowledge = knowledge.plus(equations(design, np.full(SIZE, 0.2 * place), values), np.full(SIZE, 0.2 * place))
+        information = information.plus(
+            equations(design, np.full(SIZE, 0.2 * place), values), np.full(SIZE, 0.2 * place)
+        )
     solution = np.linalg.lstsq(np.concatenate(blocks), np.concatenate(data), rcond=None)[0]
-    assert best(knowledge) == pytest.approx(solution)
-    assert knowledge.gradient(solution) == pytest.approx(0.0, abs=1e-9)
-    assert knowledge.cost(solution) < knowledge.cost(solution + 0.01)
+    assert best(information) == pytest.approx(solution)
+    assert information.score(solution) == pytest.approx(0.0, abs=1e-9)
+    assert information.cost(solution) < information.cost(solution + 0.01)
 
 
 def test_a_prior_alone_has_its_own_covariance():
     std = np.array([0.1, 0.5, 1.0, 2.0])
-    assert Knowledge.gaussian(std).covariance(ALL) == pytest.approx(np.diag(std**2))
+    assert Information.gaussian(std).covariance(ALL) == pytest.approx(np.diag(std**2))
 
 
 def test_covariance_is_that_of_the_best_values_when_evidence_has_faded():
-    """Each stretch halves what was known before: the inverse of the information would be far too large a variance."""
+    """Each segment halves what was known before: the inverse of the information would be far too large a variance."""
     blocks = designs(count=6)
     rng = np.random.default_rng(3)
     found = []
     for _ in range(4000):
-        knowledge = Knowledge.none(SIZE)
+        information = Information.none(SIZE)
         for design in blocks:
             data = design @ TRUTH + rng.standard_normal(len(design))
-            knowledge = knowledge.faded(0.5).plus(equations(design, np.zeros(SIZE), data), np.zeros(SIZE))
-        found.append(best(knowledge))
+            information = information.faded(0.5).plus(equations(design, np.zeros(SIZE), data), np.zeros(SIZE))
+        found.append(best(information))
     errors = np.array(found) - TRUTH
-    covariance = knowledge.covariance(ALL)
+    covariance = information.covariance(ALL)
     # chi-square of 4 unknowns x 4000 runs: 1.1 % by chance
     assert np.mean(np.einsum("ni,ij,nj->n", errors, np.linalg.inv(covariance), errors)) / SIZE == pytest.approx(
         1.0, abs=0.045
     )
-    naive = np.linalg.inv(knowledge.information)
+    naive = np.linalg.inv(information.matrix)
     assert np.mean(np.einsum("ni,ij,nj->n", errors, np.linalg.inv(naive), errors)) / SIZE < 0.8
 
 
 def test_unknowns_that_are_not_fitted_have_no_variance_and_do_not_widen_the_others():
-    knowledge = Knowledge.none(SIZE)
+    information = Information.none(SIZE)
     for design in designs():
-        knowledge = knowledge.plus(equations(design, TRUTH, design @ TRUTH), TRUTH)
+        information = information.plus(equations(design, TRUTH, design @ TRUTH), TRUTH)
     active = np.array([True, True, False, True])
-    covariance = knowledge.covariance(active)
+    covariance = information.covariance(active)
     assert not covariance[2].any()
-    inner = np.linalg.inv(knowledge.information[np.ix_(active, active)])
+    inner = np.linalg.inv(information.matrix[np.ix_(active, active)])
     assert covariance[np.ix_(active, active)] == pytest.approx(inner)
-    assert np.all(covariance.diagonal() <= knowledge.covariance(ALL).diagonal() + 1e-12)
+    assert np.all(covariance.diagonal() <= information.covariance(ALL).diagonal() + 1e-12)
 
 
 def test_a_step_of_the_equations_is_the_same_as_linearising_there():
@@ -87,5 +89,5 @@ def test_a_step_of_the_equations_is_the_same_as_linearising_there():
     data = design @ TRUTH + np.random.default_rng(4).standard_normal(len(design))
     step = np.array([0.1, -0.3, 0.2, 0.05])
     moved, there = equations(design, np.zeros(SIZE), data).moved(step), equations(design, step, data)
-    assert moved.gradient == pytest.approx(there.gradient)
+    assert moved.score == pytest.approx(there.score)
     assert moved.cost == pytest.approx(there.cost)

@@ -5,14 +5,14 @@ from scipy.integrate import solve_ivp
 from hd_monitor.acquisition.record import Record
 from hd_monitor.identification.fit.linearisation import Predictor
 from hd_monitor.identification.fit.unknowns import Unknowns
-from hd_monitor.identification.segment.segment import StretchBuilder
+from hd_monitor.identification.segment.segment import SegmentBuilder
 from hd_monitor.model import Dynamics
 from hd_monitor.reducer import Reducer
 
 REDUCER, DYNAMICS = Reducer(), Dynamics()
 UNKNOWNS = Unknowns(harmonics=2, load_orders=(1, 2))
 RATE, TORQUE = 1000.0, 10.0
-BUILDER = StretchBuilder(reducer=REDUCER, harmonics=2, load_orders=(1, 2), natural_frequency=55.0)
+BUILDER = SegmentBuilder(reducer=REDUCER, harmonics=2, load_orders=(1, 2), natural_frequency=55.0)
 PREDICTOR = Predictor(unknowns=UNKNOWNS, given=DYNAMICS, reference_torque=TORQUE)
 
 
@@ -31,7 +31,7 @@ def values_at_random(seed):
     return values
 
 
-def stretch(acceleration):
+def segment(acceleration):
     times = np.arange(acceleration.size) / RATE
     angle, speed, _ = motion(times)
     record = Record(
@@ -79,7 +79,7 @@ def test_prediction_agrees_with_an_adaptive_integrator():
         lambda t, y: (y[1], acceleration(t, *y)), (0.0, times[-1]), start, "DOP853", times, rtol=1e-10, atol=1e-14
     )
     measured = np.array([acceleration(t, *y) for t, y in zip(times, solution.y.T, strict=True)])
-    line = PREDICTOR.linearise(stretch(measured), values)
+    line = PREDICTOR.linearise(segment(measured), values)
     # the two starting values are free, so a right prediction leaves nothing
     assert np.abs(line.residual).max() < 2e-3 * np.std(measured)
 
@@ -88,7 +88,7 @@ def test_prediction_agrees_with_an_adaptive_integrator():
 def test_jacobian_is_the_derivative_of_the_prediction(place):
     values = values_at_random(place)
     rng = np.random.default_rng(place)
-    plan = stretch(rng.standard_normal(700))
+    plan = segment(rng.standard_normal(700))
     step = 1e-6 if place == UNKNOWNS.delay else 1e-5
     change = np.zeros(UNKNOWNS.size)
     change[place] = step
@@ -103,7 +103,7 @@ def test_jacobian_is_the_derivative_of_the_prediction(place):
 
 
 def test_lines_after_a_lag_are_those_of_the_later_angle():
-    path = stretch(np.ones(400)).at_steps
+    path = segment(np.ones(400)).at_steps
     times = np.arange(400) / RATE
     angle, speed, _ = motion(times)
     later = path.lines_after(0.004)
@@ -117,7 +117,7 @@ def test_moving_on_without_a_simulation_is_right_to_second_order():
     """Half the step, a quarter of the difference from what a simulation there says."""
     rng = np.random.default_rng(5)
     values = values_at_random(4)
-    part = stretch(3.0 * rng.standard_normal(1200))
+    part = segment(3.0 * rng.standard_normal(1200))
     here = PREDICTOR.linearise(part, values)
     step = 1e-3 * rng.standard_normal(UNKNOWNS.size) * UNKNOWNS.mask(UNKNOWNS.stiffness, UNKNOWNS.load)
     differences = []

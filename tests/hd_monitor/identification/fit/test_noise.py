@@ -6,15 +6,15 @@ from scipy.signal import freqz, lfilter
 
 from hd_monitor.acquisition.record import Record
 from hd_monitor.identification.fit.noise import EDGES, NoiseFloor
-from hd_monitor.identification.segment.segment import StretchBuilder
+from hd_monitor.identification.segment.segment import SegmentBuilder
 from hd_monitor.reducer import Reducer
 
 RATE, STD = 400.0, 0.7  # Hz, too low to be reduced; rad/s²
 DENSITY = 2.0 * STD**2 / RATE  # (rad/s²)²/Hz, one-sided
-BUILDER = StretchBuilder(reducer=Reducer(), harmonics=2, load_orders=(2,), natural_frequency=55.0)
+BUILDER = SegmentBuilder(reducer=Reducer(), harmonics=2, load_orders=(2,), natural_frequency=55.0)
 
 
-def stretch(values):
+def segment(values):
     angle = 2.0 * np.arange(values.size) / RATE
     record = Record(
         start=0.0,
@@ -30,7 +30,7 @@ def stretch(values):
 def floor_of(*signals):
     floor = NoiseFloor()
     for values in signals:
-        item = stretch(values)
+        item = segment(values)
         residual = item.transform(item.acceleration[:, None])[:, 0]
         floor = floor.updated(item, residual, np.zeros(residual.size))
     return floor
@@ -43,7 +43,7 @@ def white(seed, count=1600):
 def test_white_noise_has_its_density_at_every_frequency():
     floor = floor_of(*(white(seed) for seed in range(40)))
     frequencies = np.geomspace(10.0, 180.0, 40)
-    # 40 stretches of 4 s: 300 degrees of freedom a hertz, so some 5 % by chance in the narrowest band
+    # 40 segments of 4 s: 300 degrees of freedom a hertz, so some 5 % by chance in the narrowest band
     assert floor.density(frequencies) == pytest.approx(DENSITY, rel=0.12)
     assert floor.mean == pytest.approx(DENSITY, rel=0.02)
 
@@ -68,7 +68,7 @@ def test_a_fit_that_follows_the_lines_does_not_lower_the_floor_there():
     lines = np.concatenate([[np.cos(f * times), np.sin(f * times)] for f in 2.0 * np.pi * np.arange(48.0, 52.0)]).T
     corrected, naive = NoiseFloor(), NoiseFloor()
     for seed in range(60):
-        item = stretch(white(seed))
+        item = segment(white(seed))
         columns = item.transform(np.column_stack([item.acceleration, lines]))
         basis = np.linalg.qr(columns[:, 1:])[0]
         residual = columns[:, 0] - basis @ (basis.T @ columns[:, 0])
@@ -80,16 +80,16 @@ def test_a_fit_that_follows_the_lines_does_not_lower_the_floor_there():
     def around(floor):
         return floor.power[band] / floor.freedom[band]
 
-    # 60 stretches leave some 3500 degrees of freedom in the band: 2.5 % by chance
+    # 60 segments leave some 3500 degrees of freedom in the band: 2.5 % by chance
     assert around(corrected) == pytest.approx(DENSITY, rel=0.075)
     assert around(naive) < 0.92 * DENSITY
 
 
 def test_information_weighted_by_an_estimated_floor_is_not_exaggerated():
-    """Student: over many short stretches, 1/density of the floor each one measures on itself averages to the truth."""
+    """Student: over many short segments, 1/density of the floor each one measures on itself averages to the truth."""
     frequencies = np.array([40.0, 80.0, 120.0])
     weights = np.mean([1.0 / floor_of(white(seed)).density(frequencies) for seed in range(300)], axis=0)
-    # bands of at least 60 degrees of freedom: 300 stretches leave 1 % by chance
+    # bands of at least 60 degrees of freedom: 300 segments leave 1 % by chance
     assert weights * DENSITY == pytest.approx(1.0, abs=0.035)
 
 

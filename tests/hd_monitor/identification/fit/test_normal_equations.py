@@ -1,4 +1,4 @@
-"""What a stretch says: the information of a weighted least-squares fit, and what the fit takes from the noise."""
+"""What a segment says: the information of a weighted least-squares fit, and what the fit takes from the noise."""
 
 import numpy as np
 import pytest
@@ -8,21 +8,21 @@ from hd_monitor.identification.fit.linearisation import Predictor
 from hd_monitor.identification.fit.noise import NoiseFloor
 from hd_monitor.identification.fit.normal_equations import examine
 from hd_monitor.identification.fit.unknowns import Unknowns
-from hd_monitor.identification.segment.segment import StretchBuilder
+from hd_monitor.identification.segment.segment import SegmentBuilder
 from hd_monitor.model import Dynamics
 from hd_monitor.reducer import Reducer
 
 UNKNOWNS = Unknowns(harmonics=2, load_orders=(2,))
 RATE, NOISE, TORQUE = 400.0, 0.2, 10.0  # Hz, too low to be reduced; rad/s²; N·m
 FLOOR = NoiseFloor.white(2.0 * NOISE**2 / RATE)
-BUILDER = StretchBuilder(reducer=Reducer(), harmonics=2, load_orders=(2,), natural_frequency=55.0)
+BUILDER = SegmentBuilder(reducer=Reducer(), harmonics=2, load_orders=(2,), natural_frequency=55.0)
 PREDICTOR = Predictor(unknowns=UNKNOWNS, given=Dynamics(), reference_torque=TORQUE)
 FITTED = UNKNOWNS.mask(UNKNOWNS.stiffness, UNKNOWNS.load)
 TRUTH = UNKNOWNS.zero()
 TRUTH[UNKNOWNS.stiffness] = [0.03, 0.01, 0.0, 0.02, 0.05, 0.0, 0.01, -0.02]
 
 
-def stretch(acceleration):
+def segment(acceleration):
     """Two thirds of an output turn in 4 s, from 400 to 600 rpm."""
     speed = np.linspace(400.0, 600.0, acceleration.size) * 2.0 * np.pi / 60.0 / 80.0
     record = Record(
@@ -43,11 +43,11 @@ def noise(seed, count=1600):
 @pytest.fixture(scope="module")
 def clean():
     """Vibration of the truth, as the model predicts it from rest."""
-    return PREDICTOR.linearise(stretch(noise(0)), TRUTH).predicted
+    return PREDICTOR.linearise(segment(noise(0)), TRUTH).predicted
 
 
 def at_truth(clean, seed):
-    return examine(stretch(clean + noise(seed)), PREDICTOR, TRUTH, FLOOR)
+    return examine(segment(clean + noise(seed)), PREDICTOR, TRUTH, FLOOR)
 
 
 def test_the_cost_of_the_truth_is_what_noise_leads_to_expect(clean):
@@ -61,10 +61,8 @@ def test_the_gradients_covariance_is_the_information(clean):
     for seed in range(1, 121):
         equations = at_truth(clean, seed).equations
         place = np.ix_(FITTED, FITTED)
-        squares.append(
-            equations.gradient[FITTED] @ np.linalg.solve(equations.information[place], equations.gradient[FITTED])
-        )
-    # chi-square of 10 unknowns x 120 stretches: 4 % by chance
+        squares.append(equations.score[FITTED] @ np.linalg.solve(equations.information[place], equations.score[FITTED]))
+    # chi-square of 10 unknowns x 120 segments: 4 % by chance
     assert np.mean(squares) / FITTED.sum() == pytest.approx(1.0, abs=0.16)
 
 
@@ -77,7 +75,7 @@ def test_a_fit_takes_as_much_noise_as_it_has_unknowns_and_takes_it_at_the_lines(
     assert leverage.sum() == pytest.approx(FITTED.sum() + 2.0)  # and two free vibrations
     assert leverage.min() >= 0.0
     assert leverage.max() <= 1.0 + 1e-9
-    frequencies = np.tile(evidence.stretch.frequencies, 2)
+    frequencies = np.tile(evidence.segment.frequencies, 2)
     # lines from 13 to 20 Hz and from 27 to 41 Hz, free vibration around 55 Hz
     assert leverage[(frequencies > 75.0)].sum() < 0.1 * leverage.sum()
 
@@ -86,13 +84,13 @@ def test_a_small_step_leads_where_looking_anew_leads(clean):
     step = UNKNOWNS.zero()
     step[UNKNOWNS.stiffness] = 1e-5
     moved = at_truth(clean, 1).moved(step)
-    there = examine(stretch(clean + noise(1)), PREDICTOR, TRUTH + step, FLOOR)
+    there = examine(segment(clean + noise(1)), PREDICTOR, TRUTH + step, FLOOR)
     assert moved.residual == pytest.approx(there.residual, abs=2e-4 * np.abs(there.residual).max())
     assert moved.equations.cost == pytest.approx(there.equations.cost, rel=1e-6)
 
 
 def test_twice_the_noise_is_a_quarter_of_the_information(clean):
-    item = stretch(clean + noise(1))
+    item = segment(clean + noise(1))
     loud = examine(item, PREDICTOR, TRUTH, NoiseFloor.white(8.0 * NOISE**2 / RATE)).equations
     quiet = examine(item, PREDICTOR, TRUTH, FLOOR).equations
     assert 4.0 * loud.information == pytest.approx(quiet.information)
@@ -100,7 +98,7 @@ def test_twice_the_noise_is_a_quarter_of_the_information(clean):
 
 
 def test_other_weights_need_no_simulation(clean):
-    item, other = stretch(clean + noise(1)), NoiseFloor.white(3.0 * NOISE**2 / RATE)
+    item, other = segment(clean + noise(1)), NoiseFloor.white(3.0 * NOISE**2 / RATE)
     anew, weighted = examine(item, PREDICTOR, TRUTH, other), examine(item, PREDICTOR, TRUTH, FLOOR).weighted(other)
     np.testing.assert_array_equal(weighted.equations.information, anew.equations.information)
     np.testing.assert_array_equal(weighted.residual, anew.residual)
@@ -112,6 +110,6 @@ def test_a_moved_point_keeps_its_place_under_other_weights(clean):
     moved = at_truth(clean, 1).moved(step)
     weighted = moved.weighted(FLOOR)
     assert weighted.equations.cost == pytest.approx(moved.equations.cost, rel=1e-9)
-    np.testing.assert_allclose(weighted.equations.gradient, moved.equations.gradient, rtol=1e-6, atol=1e-6)
+    np.testing.assert_allclose(weighted.equations.score, moved.equations.score, rtol=1e-6, atol=1e-6)
     np.testing.assert_allclose(weighted.residual, moved.residual, atol=1e-9)
     np.testing.assert_array_equal(weighted.values, TRUTH + step)

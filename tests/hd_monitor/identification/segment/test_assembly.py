@@ -1,4 +1,4 @@
-"""Records become stretches: joined where they follow each other, ended where they do not, dropped where too short."""
+"""Records become segments: joined where they follow each other, ended where they do not, dropped where too short."""
 
 import math
 
@@ -23,7 +23,7 @@ def record(start, seconds, *, continues=True, speed=SPEED, torque=5.0, angle=Non
     )
 
 
-def test_records_that_follow_each_other_make_one_stretch():
+def test_records_that_follow_each_other_make_one_segment():
     collector = Collector(MINIMUM)
     first, second = record(0.0, 1.0, continues=False), record(1.0, 1.0)
     assert collector.add(first, 2.0) == []
@@ -32,7 +32,7 @@ def test_records_that_follow_each_other_make_one_stretch():
     assert collector.flush() == []
 
 
-def test_a_gap_ends_a_stretch():
+def test_a_gap_ends_a_segment():
     collector = Collector(MINIMUM)
     first, second = record(0.0, 1.0, continues=False), record(5.0, 1.0, continues=False)
     collector.add(first, 4.0)
@@ -40,7 +40,7 @@ def test_a_gap_ends_a_stretch():
     assert collector.flush() == [[second]]
 
 
-def test_a_standing_joint_ends_a_stretch_and_is_left_out():
+def test_a_standing_joint_ends_a_segment_and_is_left_out():
     collector = Collector(MINIMUM)
     first = record(0.0, 1.0, continues=False)
     collector.add(first, 4.0)
@@ -48,7 +48,7 @@ def test_a_standing_joint_ends_a_stretch_and_is_left_out():
     assert collector.duration == 0.0
 
 
-def test_unknown_motion_ends_a_stretch_and_is_left_out():
+def test_unknown_motion_ends_a_segment_and_is_left_out():
     collector = Collector(MINIMUM)
     first = record(0.0, 1.0, continues=False)
     collector.add(first, 4.0)
@@ -70,7 +70,7 @@ def test_what_is_too_short_is_dropped():
     assert collector.flush() == []
 
 
-def test_a_stretch_of_hardly_any_samples_is_dropped():
+def test_a_segment_of_hardly_any_samples_is_dropped():
     collector = Collector(MINIMUM)
     empty = record(0.0, 1.0, continues=False)
     empty.acceleration[60:] = math.nan

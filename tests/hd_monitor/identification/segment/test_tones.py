@@ -43,7 +43,7 @@ def test_noise_holds_no_tones():
     assert found == 0
 
 
-def test_too_short_a_stretch_says_nothing():
+def test_too_short_a_segment_says_nothing():
     assert foreign_tones(tone(50.0, 5.0)[:150], PERIOD, LINES, 1.0).size == 0
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hd_monitor.identification.segment.torque import own_acceleration, smooth_torque
+from hd_monitor.identification.segment.torque import own_acceleration, regress_torque
 
 PERIOD = 1e-3  # s
 TIMES = np.arange(4000) * PERIOD
@@ -27,7 +27,7 @@ def strokes():
 
 def smoothed(torque, motion):
     angle, speed = motion
-    return smooth_torque(torque, angle, speed, own_acceleration(speed, PERIOD), PERIOD)
+    return regress_torque(torque, angle, speed, own_acceleration(speed, PERIOD), PERIOD)
 
 
 def test_noise_on_a_constant_torque_goes_but_for_its_mean():

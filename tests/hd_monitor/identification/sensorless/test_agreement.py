@@ -20,7 +20,7 @@ def direction(name="forward", dominance=(0.999, 0.001), chance=(1e-6, 0.5), riva
         chance=LinePair(*chance),
         dominance=LinePair(*dominance),
         rival=rival,
-        strokes=4,
+        segments=4,
         samples=800,
     )
 
