@@ -73,13 +73,13 @@ class Inputs:
 
     def __init__(self, joint: str, settings: JointSettings, sink: Sink) -> None:
         self._sink = sink
-        self._wanted: str = settings["input.joint_name"]
+        self._wanted = settings.input.joint_name
         self._joint = joint
         self._joint_seen = False
-        axis: str = settings["input.axis"]
+        axis = settings.input.axis
         self._axis, self._sign = _AXES[axis[-1]], -1.0 if axis.startswith("-") else 1.0
-        self._radius: float = settings["input.sensor_radius"]
-        self._source: str = settings["input.source"]
+        self._radius = settings.input.sensor_radius
+        self._source = settings.input.source
         if self._source == "imu" and self._radius <= 0.0:
             raise ParameterError(
                 f"input.sensor_radius = {self._radius:g} m with input.source = 'imu': a tangential acceleration "

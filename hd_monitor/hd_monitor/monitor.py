@@ -13,7 +13,7 @@ from .arrays import FloatArray
 from .assessment import Assessment
 from .contract import NANOSECONDS, Block
 from .diagnosis.absence import nothing_received, partly_lost, unusable
-from .diagnosis.judge import Judge, Limits
+from .diagnosis.judge import Judge
 from .diagnosis.verdict import Verdict
 from .identification.identifier import Identifier
 from .identification.result import Identification
@@ -62,10 +62,10 @@ class Monitor:
         self.settings = settings
         self._reducer = settings.reducer
         self._rpm = self._reducer.reduction * 60.0 / math.tau
-        self._radius: float = settings["input.sensor_radius"]
-        self._period = round(settings["analysis.period"] * NANOSECONDS)
-        self._timeout = round(settings["input.timeout"] * NANOSECONDS)
-        self._judge = Judge(Limits.from_settings(settings))
+        self._radius = settings.input.sensor_radius
+        self._period = round(settings.analysis.period * NANOSECONDS)
+        self._timeout = round(settings.input.timeout * NANOSECONDS)
+        self._judge = Judge(settings)
         self._vibration = StampedBuffer(1)
         self._motion = StampedBuffer(3)
         needed = (self._motion,) if settings.sensorless else (self._vibration, self._motion)
@@ -80,8 +80,8 @@ class Monitor:
 
     def _begin_evidence(self, identifier: Identifier | SensorlessIdentifier | None = None) -> None:
         settings = self.settings
-        self._rms = RmsAccumulator(settings["analysis.rms_bin_width"])
-        self._steady = SteadySegment(self._reducer, settings["analysis.minimum_speed"])
+        self._rms = RmsAccumulator(settings.analysis.rms_bin_width)
+        self._steady = SteadySegment(self._reducer, settings.analysis.minimum_speed)
         self._identifier = identifier or (
             SensorlessIdentifier(settings) if settings.sensorless else Identifier(settings)
         )
@@ -160,7 +160,7 @@ class Monitor:
     def change_limits(self, settings: JointSettings) -> None:
         """Put the ``diagnosis.*`` parameters of other settings in force, without losing any evidence."""
         self.settings = settings
-        self._judge.change_limits(Limits.from_settings(settings))
+        self._judge.change_limits(settings.diagnosis)
 
     def reset_latch(self) -> None:
         """Let go of a latched verdict."""
@@ -168,7 +168,7 @@ class Monitor:
 
     def reset(self) -> None:
         """Forget all evidence, after the reducer was exchanged say; counters of the input stay."""
-        self._judge = Judge(self._judge.limits)
+        self._judge = Judge(self.settings)
         self._recorder.cut()
         self._begin_evidence()
 
@@ -199,7 +199,7 @@ class Monitor:
         else:
             verdict = self._judge.judge(evidence, "" if evidence is not None else self._missing(assembled))
             if evidence is not None and self._recorder.torque_source == "assumed":
-                note = f"no effort was measured: the torque is taken to be {self.settings['load.torque']:g} N·m"
+                note = f"no effort was measured: the torque is taken to be {self.settings.load.torque:g} N·m"
                 verdict = replace(verdict, reason=f"{verdict.reason}; {note}")
         self._latest = self._pack(end, verdict, assembled)
         return self._latest
@@ -231,7 +231,7 @@ class Monitor:
         if not self.settings.sensorless and not np.isfinite(assembled.vibration).any():
             return f"No usable vibration sample in the last period: {self._recorder.last_fault}"
         speed = self._speed(assembled)
-        if not speed >= self.settings["analysis.minimum_speed"]:
+        if not speed >= self.settings.analysis.minimum_speed:
             return "The joint has not turned enough yet: the lines show in motion only"
         rate = self._recorder.rate
         if not self.settings.sensorless and self._reducer.line_frequencies(speed).circular_spline > 0.5 * rate:
@@ -256,7 +256,7 @@ class Monitor:
         """Vibration at the sensor's radius [m/s²]; gravity and the arm's own motion taken off an IMU's signal."""
         values = self._radius * acceleration
         known = np.isfinite(values)
-        if self.settings["input.source"] != "imu" or int(known.sum()) < 2 * _SLOW_DEGREE:
+        if self.settings.input.source != "imu" or int(known.sum()) < 2 * _SLOW_DEGREE:
             return values
         place = np.linspace(-1.0, 1.0, values.size)
         slow = np.polynomial.Legendre.fit(place[known], values[known], _SLOW_DEGREE, domain=[-1.0, 1.0])
@@ -273,7 +273,7 @@ class Monitor:
         return math.sqrt(power / squares.size) if squares.size else math.nan
 
     def _pack(self, stamp: int, verdict: Verdict, assembled: AssembledPeriod | None) -> Assessment:
-        limits = self._judge.limits
+        limits = self.settings.diagnosis
         quality = self._recorder.quality(
             out_of_order=self._vibration.late + self._vibration.disordered,
             clock_jumps=self._vibration.jumps + self._motion.jumps,
@@ -289,8 +289,8 @@ class Monitor:
             speed=self._speed(assembled) if assembled is not None else math.nan,
             rms=self._level(assembled.vibration) if assembled is not None else math.nan,
             travel_needed=self._reducer.travel_to_separate(1),
-            warn_limit=limits.warn,
-            error_limit=limits.error,
+            warn_limit=limits.warn_index,
+            error_limit=limits.error_index,
             torque_source=self._recorder.torque_source,
             records=assembled.records if assembled is not None else (),
             joint_samples=assembled.joint_samples if assembled is not None else None,

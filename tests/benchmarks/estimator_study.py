@@ -26,7 +26,7 @@ from pathlib import Path
 import numpy as np
 
 from hd_monitor.acquisition.record import Record
-from hd_monitor.diagnosis.judge import Judge, Limits
+from hd_monitor.diagnosis.judge import Judge
 from hd_monitor.diagnosis.verdict import Component
 from hd_monitor.errors import HdMonitorError
 from hd_monitor.identification.identifier import Identifier
@@ -114,7 +114,7 @@ def judge_case(number: int, seed: int) -> Outcome:
     for record in records:
         identifier.add(record)
     result = identifier.finish()
-    verdict = Judge(Limits.from_settings(settings)).judge(result, "no evidence")
+    verdict = Judge(settings).judge(result, "no evidence")
     unknown = LinePair(math.nan, math.nan)
     return Outcome(
         number=number,

@@ -37,7 +37,7 @@ def random_unit(seed: int, seconds: float) -> tuple[dict[str, Any], dict[str, An
         "dynamics.natural_frequency": float(rng.uniform(30.0, 80.0)),
         "dynamics.damping_ratio": float(rng.uniform(0.015, 0.05)),
     }
-    limit = JointSettings.from_mapping()["diagnosis.warn_index"]
+    limit = JointSettings.from_mapping().diagnosis.warn_index
     rig: dict[str, Any] = dict(common)
     for spline in ("flexspline", "circular_spline"):
         shape = rng.dirichlet([3.0, 1.5, 0.7]) ** 0.5  # root-sum-square 1

@@ -17,7 +17,7 @@ from scipy import stats
 from tests.benchmarks.sensorless_joint import random_joint, simulate_joint
 
 from hd_monitor.acquisition.record import JointSamples
-from hd_monitor.diagnosis import Component, Judge, Limits
+from hd_monitor.diagnosis import Component, Judge
 from hd_monitor.identification.result import Identification
 from hd_monitor.identification.sensorless.identifier import SensorlessIdentifier
 from hd_monitor.identification.teeth.ranking import rank_tooth_pairs
@@ -35,8 +35,8 @@ PLACEBO_TEETH = [(z, z + 2) for z in (*range(188, 193), *range(208, 213), 80, 10
 
 def verdict(found: Identification | None, settings: JointSettings) -> Component:
     """Component that the monitor would show if this evidence stays."""
-    judge = Judge(Limits.from_settings(settings))
-    for _ in range(settings["diagnosis.confirm_window"]):
+    judge = Judge(settings)
+    for _ in range(settings.diagnosis.confirm_window):
         shown = judge.judge(found, "nothing yet")
     return shown.component
 

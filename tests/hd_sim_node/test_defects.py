@@ -9,7 +9,7 @@ from hd_sim_node.defects import DEFECTS, stiffness_of
 from hd_sim_node.programmes import build_programme
 from hd_sim_node.stability import describe, unstable_speeds
 
-LIMITS = JointSettings.from_mapping()
+LIMITS = JointSettings.from_mapping().diagnosis
 NOTHING = StiffnessSeries()
 
 
@@ -26,9 +26,9 @@ def test_indexes_are_clear_of_the_monitors_limits(defect, bad_flexspline, bad_ci
     model = model_of(defect)
     for index, bad in ((model.flexspline.index, bad_flexspline), (model.circular_spline.index, bad_circular_spline)):
         if bad:
-            assert index > 1.2 * LIMITS["diagnosis.error_index"]
+            assert index > 1.2 * LIMITS.error_index
         else:
-            assert 0.005 < index < 0.5 * LIMITS["diagnosis.warn_index"]
+            assert 0.005 < index < 0.5 * LIMITS.warn_index
 
 
 @pytest.mark.parametrize("defect", DEFECTS)

@@ -57,10 +57,10 @@ class Recorder:
     """
 
     def __init__(self, settings: JointSettings) -> None:
-        self._max_gap: float = settings["analysis.max_gap"]
-        self._full_scale: float = settings["input.clipping_limit"]
-        self._load_source: str = settings["load.source"]
-        self._load_torque: float = settings["load.torque"]
+        self._max_gap = settings.analysis.max_gap
+        self._full_scale = settings.input.clipping_limit
+        self._load_source = settings.load.source
+        self._load_torque = settings.load.torque
         self._track = MotionTrack()
         self._grid: _Grid | None = None
         self._joined = False

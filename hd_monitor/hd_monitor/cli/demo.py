@@ -142,8 +142,8 @@ class _Plan:
         model = self.rig.model
         return name_component(
             LinePair(model.circular_spline.index, model.flexspline.index),
-            self._settings["diagnosis.warn_index"],
-            self._settings["diagnosis.both_ratio"],
+            self._settings.diagnosis.warn_index,
+            self._settings.diagnosis.both_ratio,
         ).value
 
     def progress(self, view: View) -> float:

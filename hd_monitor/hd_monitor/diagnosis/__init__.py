@@ -1,6 +1,6 @@
 """From indexes to a verdict with reasons."""
 
-from .judge import Judge, Limits
+from .judge import Judge
 from .probability import component_probabilities, name_component
 from .status import Status, status_of
 from .verdict import Component, FaultCode, Level, Verdict
@@ -10,7 +10,6 @@ __all__ = [
     "FaultCode",
     "Judge",
     "Level",
-    "Limits",
     "Status",
     "Verdict",
     "component_probabilities",

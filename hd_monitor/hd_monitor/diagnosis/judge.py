@@ -1,12 +1,12 @@
 """From evidence to a verdict: limits with hysteresis, confidence, confirmation N of M, latch."""
 
 from collections import deque
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import NamedTuple
 
 from ..identification.result import Identification
 from ..reducer import Mount
-from ..settings import JointSettings
+from ..settings import DiagnosisSettings, JointSettings
 from .probability import Probabilities, component_probabilities, name_component
 from .verdict import Component, FaultCode, Level, Verdict
 from .wording import (
@@ -27,46 +27,11 @@ FAULT_CODES = {
 _SHARP = 0.1  # an index whose standard deviation is below this part of the limit is compared with it as it stands
 
 
-@dataclass(frozen=True, slots=True)
-class Limits:
-    """Limits on the indexes and the rules around them, from the settings ``diagnosis.*``.
-
-    `motor_side` is the spline whose line is exactly twice per wave-generator revolution.
-    """
-
-    warn: float
-    error: float
-    both_ratio: float
-    confidence: float
-    hysteresis: float
-    confirm_count: int
-    confirm_window: int
-    latch: bool
-    motor_side: Component = Component.CIRCULAR_SPLINE
-
-    @classmethod
-    def from_settings(cls, settings: JointSettings) -> "Limits":
-        """Read the limits from a joint's settings."""
-        return cls(
-            settings["diagnosis.warn_index"],
-            settings["diagnosis.error_index"],
-            settings["diagnosis.both_ratio"],
-            settings["diagnosis.confidence"],
-            settings["diagnosis.hysteresis"],
-            settings["diagnosis.confirm_count"],
-            settings["diagnosis.confirm_window"],
-            settings["diagnosis.latch"],
-            Component.CIRCULAR_SPLINE
-            if settings.reducer.mount is Mount.CIRCULAR_SPLINE_FIXED
-            else Component.FLEXSPLINE,
-        )
-
-
 class _Case(NamedTuple):
     """What a verdict about the present evidence depends on."""
 
     evidence: Identification
-    limits: Limits
+    limits: DiagnosisSettings
     shown: tuple[Component, Level] | None
 
     def is_as(self, other: "_Case") -> bool:
@@ -79,7 +44,8 @@ class Judge:
 
     Parameters
     ----------
-    limits : Limits
+    settings : JointSettings
+        Of them ``diagnosis.*`` and the mount count.
 
     Notes
     -----
@@ -88,19 +54,17 @@ class Judge:
     follow the evidence at once. A latched verdict stays until a worse one or :meth:`reset_latch`.
     """
 
-    def __init__(self, limits: Limits) -> None:
-        self._limits = limits
-        self._recent: deque[tuple[Component, Level]] = deque(maxlen=limits.confirm_window)
+    def __init__(self, settings: JointSettings) -> None:
+        self._limits = settings.diagnosis
+        # The spline whose line is exactly twice per wave-generator revolution, as the motor's ripple is.
+        fixed = settings.reducer.mount is Mount.CIRCULAR_SPLINE_FIXED
+        self._motor_side = Component.CIRCULAR_SPLINE if fixed else Component.FLEXSPLINE
+        self._recent: deque[tuple[Component, Level]] = deque(maxlen=self._limits.confirm_window)
         self._shown: Verdict | None = None
         self._latched: Verdict | None = None
         self._judged: tuple[_Case, Verdict] | None = None
 
-    @property
-    def limits(self) -> Limits:
-        """The limits in force."""
-        return self._limits
-
-    def change_limits(self, limits: Limits) -> None:
+    def change_limits(self, limits: DiagnosisSettings) -> None:
         """Put other limits in force; what is shown stays until the next verdicts."""
         self._limits = limits
         self._recent = deque(self._recent, maxlen=limits.confirm_window)
@@ -108,7 +72,7 @@ class Judge:
             self._latched = None
 
     def reset_latch(self) -> None:
-        """Let go of a latched verdict."""
+        """Release a latched verdict."""
         self._latched = None
 
     def judge(self, evidence: Identification | None, missing: str) -> Verdict:
@@ -166,11 +130,11 @@ class Judge:
         limits = self._limits
         held = self._shown.component if self._shown is not None else Component.UNDETERMINED
         alarmed = held not in (Component.NONE, Component.UNDETERMINED)
-        limit = limits.warn * (1.0 - limits.hysteresis) if alarmed else limits.warn
+        limit = limits.warn_index * (1.0 - limits.hysteresis) if alarmed else limits.warn_index
         component = name_component(evidence.index, limit, limits.both_ratio)
         odds = component_probabilities(evidence, limit, limits.both_ratio)
         worst = max(zip(evidence.index, evidence.index_std, strict=True))
-        sharp = max(evidence.index_std) < _SHARP * limits.warn
+        sharp = max(evidence.index_std) < _SHARP * limits.warn_index
         if component is Component.NONE:
             if sharp or odds.none >= limits.confidence:
                 return self._named(component, Level.OK, evidence)
@@ -211,13 +175,13 @@ class Judge:
         shown = self._shown.level if self._shown is not None else Level.OK
         easier = 1.0 - limits.hysteresis
         larger = max(evidence.index)
-        if larger >= limits.error * (easier if shown is Level.ERROR else 1.0):
+        if larger >= limits.error_index * (easier if shown is Level.ERROR else 1.0):
             return Level.ERROR
-        return Level.WARN if larger >= limits.warn * (easier if shown > Level.OK else 1.0) else Level.OK
+        return Level.WARN if larger >= limits.warn_index * (easier if shown > Level.OK else 1.0) else Level.OK
 
     def _named(self, component: Component, level: Level, evidence: Identification) -> Verdict:
         reason = describe_component(
-            component, level, evidence, self._limits.warn, self._limits.error, self._limits.motor_side
+            component, level, evidence, self._limits.warn_index, self._limits.error_index, self._motor_side
         )
         return Verdict(component=component, level=level, fault_code=FAULT_CODES[component], reason=reason)
 

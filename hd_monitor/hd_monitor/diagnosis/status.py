@@ -95,7 +95,7 @@ def status_of(assessment: "Assessment", joint: str, settings: JointSettings) -> 
     return Status(
         level=int(verdict.level),
         message=verdict.reason,
-        hardware_id=settings["reducer.serial"],
+        hardware_id=settings.serial,
         values=tuple(values),
     )
 

@@ -40,7 +40,7 @@ def joint_entry(joint: JointIdentification) -> dict[str, Any]:
     entry: dict[str, Any] = {
         "joint": joint.plan.joint,
         "bags": joint.bags,
-        "source": settings["input.source"],
+        "source": settings.input.source,
         "relative": bool(found.relative),
         "torque_source": joint.last.torque_source if joint.last and not settings.sensorless else "unknown",
         "circular_spline": _spline(found.index.circular_spline, found.index_std.circular_spline, both.circular_spline),
@@ -78,8 +78,8 @@ def joint_entry(joint: JointIdentification) -> dict[str, Any]:
     }
     if not settings.sensorless:
         fn, zeta = numbers.natural_frequency(found), numbers.damping_ratio(found)
-        entry["natural_frequency"] = _dynamics(fn, settings["dynamics.natural_frequency"])
-        entry["damping_ratio"] = _dynamics(zeta, settings["dynamics.damping_ratio"])
+        entry["natural_frequency"] = _dynamics(fn, settings.dynamics.natural_frequency)
+        entry["damping_ratio"] = _dynamics(zeta, settings.dynamics.damping_ratio)
         entry["load_fluctuation"] = asdict(Estimate.gaussian(found.load_fluctuation, found.load_fluctuation_std))
     return dict(plain(entry))
 

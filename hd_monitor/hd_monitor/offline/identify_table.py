@@ -92,7 +92,7 @@ def _directions(joint: JointIdentification) -> Iterator[str]:
 
 
 def _lines(joint: JointIdentification, found: Identification) -> Iterator[str]:
-    unit = {"joint_effort": "effort's unit", "joint_velocity": "rad/s"}.get(joint.settings["input.source"], "rad/s²")
+    unit = {"joint_effort": "effort's unit", "joint_velocity": "rad/s"}.get(joint.settings.input.source, "rad/s²")
     if found.lines:
         yield f"  line amplitudes, {unit}   circular spline        flexspline"
     for line in found.lines:

@@ -32,8 +32,8 @@ class ToothCheck:
 
     def __init__(self, settings: JointSettings) -> None:
         self._sensorless = settings.sensorless
-        self._source: str = settings["input.source"] if settings.sensorless else "joint_effort"
-        self._minimum_speed: float = settings["analysis.minimum_speed"] * math.tau / 60.0 / settings.reducer.reduction
+        self._source = settings.input.source if settings.sensorless else "joint_effort"
+        self._minimum_speed = settings.analysis.minimum_speed * math.tau / 60.0 / settings.reducer.reduction
         self._parts: list[JointSamples] = []
         self._end = 0.0
         self._offset = 0.0

@@ -39,7 +39,7 @@ class _Channel:
         self.plan = plan
         self.monitor = Monitor(plan.joint, plan.settings, identifier)
         self._inputs = Inputs(plan.joint, plan.settings, self.monitor)
-        self._timeout = round(plan.settings["input.timeout"] * NANOSECONDS)
+        self._timeout = round(plan.settings.input.timeout * NANOSECONDS)
         self._heard: int | None = None
 
     def feed(self, window: Window) -> Iterator[Replayed]:
@@ -91,7 +91,7 @@ def replay(
     known = identifiers or {}
     channels = [_Channel(plan, known.get(plan.joint)) for plan in plans]
     topics = {topic for plan in plans for topic in plan.topics if topic is not None}
-    pause = min(round(plan.settings["input.timeout"] * NANOSECONDS) for plan in plans)
+    pause = min(round(plan.settings.input.timeout * NANOSECONDS) for plan in plans)
     for window in bag.windows(topics, pause=pause):
         for channel in channels:
             yield from channel.feed(window)

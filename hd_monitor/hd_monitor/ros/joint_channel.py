@@ -17,7 +17,7 @@ from .subscriptions import DrainedSubscription
 
 def queue_depth_of(settings: JointSettings) -> int:
     """Messages that the queues of a joint's inputs hold."""
-    return queue_depth(settings["input.expected_rate"], settings["input.queue_seconds"])
+    return queue_depth(settings.input.expected_rate, settings.input.queue_seconds)
 
 
 class JointChannel:
@@ -61,7 +61,7 @@ class JointChannel:
 
     @property
     def _source(self) -> Source | None:
-        source = VIBRATION_SOURCES.get(self.settings["input.source"])
+        source = VIBRATION_SOURCES.get(self.settings.input.source)
         return None if source is None else Source(f"{self._prefix}{source.topic}", source.type)
 
     @property
@@ -78,12 +78,12 @@ class JointChannel:
                 self._node,
                 source,
                 depth=queue_depth_of(self.settings),
-                reliability=self.settings["input.reliability"],
+                reliability=self.settings.input.reliability,
             )
         self.watch.wake(now)
 
     def _warn_of_short_queue(self) -> None:
-        rate, seconds = self.settings["input.expected_rate"], self.settings["input.queue_seconds"]
+        rate, seconds = self.settings.input.expected_rate, self.settings.input.queue_seconds
         most = most_messages()
         if rate * seconds > most:
             self._node.get_logger().warning(

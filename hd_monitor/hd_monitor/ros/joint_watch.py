@@ -88,7 +88,7 @@ class JointWatch:
         self.errors = 0
         self.last_error = ""
         self._inputs_used = (MOTION,) if settings.sensorless else (VIBRATION, MOTION)
-        self._timeout = round(settings["input.timeout"] * NANOSECONDS)
+        self._timeout = round(settings.input.timeout * NANOSECONDS)
         self._assessed = False
         self._start()
         self.wake(now)

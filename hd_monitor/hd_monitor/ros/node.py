@@ -81,7 +81,7 @@ class HdMonitorNode(ManagedNode):
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Subscribe, and start looking into the queues."""
         settings = [channel.settings for channel in self._channels]
-        reliable = all(own["input.reliability"] == "reliable" for own in settings)
+        reliable = all(own.input.reliability == "reliable" for own in settings)
         self._motion = DrainedSubscription(
             self,
             MOTION_SOURCE,

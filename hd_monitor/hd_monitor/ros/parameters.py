@@ -65,17 +65,20 @@ class JointParameters:
         own = any(name.startswith(f"{joint}.") for name in given for joint in joints)
         self._by_joint = len(joints) > 1 or own
         common = split_joints({name: value for name, value in given.items() if not _below(name, joints)})[joints[0]]
-        for parameter in PARAMETERS:
-            fixed = self._by_joint or not parameter.name.startswith(CHANGEABLE)
-            declare(node, parameter.name, common[parameter.name], describe(parameter, read_only=fixed))
+        self._declare("", common, fixed=self._by_joint)
         if self._by_joint:
             for joint, settings in self.settings.items():
-                for parameter in PARAMETERS:
-                    fixed = not parameter.name.startswith(CHANGEABLE)
-                    name = f"{joint}.{parameter.name}"
-                    declare(node, name, settings[parameter.name], describe(parameter, read_only=fixed))
+                self._declare(f"{joint}.", settings, fixed=False)
         node.add_on_set_parameters_callback(self._check)
         node.add_post_set_parameters_callback(self._apply)
+
+    def _declare(self, prefix: str, settings: JointSettings, *, fixed: bool) -> None:
+        values = dict(settings.values)
+        for parameter in PARAMETERS:
+            read_only = fixed or not parameter.name.startswith(CHANGEABLE)
+            declare(
+                self._node, prefix + parameter.name, values[parameter.name], describe(parameter, read_only=read_only)
+            )
 
     def _values(self) -> dict[str, Any]:
         return {name: self._node.get_parameter(name).value for name in self._node.list_parameters([], 0).names}

@@ -5,13 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hd_monitor.diagnosis.judge import Judge, Limits
+from hd_monitor.diagnosis.judge import Judge
 from hd_monitor.diagnosis.verdict import Component, FaultCode, Level, Verdict
 from hd_monitor.identification.result import Identification
 from hd_monitor.reducer import LinePair
 from hd_monitor.settings import JointSettings
 
-LIMITS = Limits.from_settings(JointSettings.from_mapping())
+
+def judge_of(**changes: object) -> Judge:
+    return Judge(JointSettings.from_mapping({f"diagnosis.{name}": value for name, value in changes.items()}))
 
 
 def evidence(cs: float, fs: float, std: float = 0.001, **changes: object) -> Identification:
@@ -23,7 +25,7 @@ def evidence(cs: float, fs: float, std: float = 0.001, **changes: object) -> Ide
 
 
 def settled(judge: Judge, found: Identification | None, missing: str = "nothing yet") -> Verdict:
-    for _ in range(LIMITS.confirm_window):
+    for _ in range(3):
         verdict = judge.judge(found, missing)
     return verdict
 
@@ -38,7 +40,7 @@ def settled(judge: Judge, found: Identification | None, missing: str = "nothing 
     ],
 )
 def test_clear_evidence_is_named(cs: float, fs: float, component: Component, level: Level, code: FaultCode) -> None:
-    verdict = settled(Judge(LIMITS), evidence(cs, fs))
+    verdict = settled(judge_of(), evidence(cs, fs))
     assert (verdict.component, verdict.level, verdict.fault_code) == (component, level, code)
     assert f"{100 * fs:.1f} %" in verdict.reason
 
@@ -51,53 +53,53 @@ def test_clear_evidence_is_named(cs: float, fs: float, component: Component, lev
     ],
 )
 def test_the_line_that_the_motor_shares_is_pointed_out(mount: str, shared: Identification, own: Identification) -> None:
-    limits = Limits.from_settings(JointSettings.from_mapping({"reducer.mount": mount}))
-    assert "motor ripple" in settled(Judge(limits), shared).reason
-    assert "motor ripple" not in settled(Judge(limits), own).reason
+    settings = JointSettings.from_mapping({"reducer.mount": mount})
+    assert "motor ripple" in settled(Judge(settings), shared).reason
+    assert "motor ripple" not in settled(Judge(settings), own).reason
 
 
 def test_no_evidence_is_undetermined_and_says_what_is_missing() -> None:
-    verdict = settled(Judge(LIMITS), None, "The joint has not turned")
+    verdict = settled(judge_of(), None, "The joint has not turned")
     assert (verdict.component, verdict.level) == (Component.UNDETERMINED, Level.WARN)
     assert verdict.fault_code is FaultCode.UNDETERMINED
     assert verdict.reason == "The joint has not turned"
 
 
 def test_blockers_forbid_a_name() -> None:
-    verdict = settled(Judge(LIMITS), evidence(0.01, 0.10, blockers=("only 20° of travel, 90° needed",)))
+    verdict = settled(judge_of(), evidence(0.01, 0.10, blockers=("only 20° of travel, 90° needed",)))
     assert (verdict.component, verdict.level) == (Component.UNDETERMINED, Level.WARN)
     assert "20°" in verdict.reason
 
 
 def test_two_splines_that_cannot_be_told_apart_are_not_named_but_the_defect_is_shown() -> None:
-    verdict = settled(Judge(LIMITS), evidence(0.15, 0.12, 0.03, index_correlation=-0.9))
+    verdict = settled(judge_of(), evidence(0.15, 0.12, 0.03, index_correlation=-0.9))
     assert verdict.component is Component.UNDETERMINED
     assert verdict.level is Level.ERROR
     assert "which spline" in verdict.reason
 
 
 def test_a_vague_index_beside_the_limit_is_not_called_sound() -> None:
-    verdict = settled(Judge(LIMITS), evidence(0.04, 0.01, 0.02))
+    verdict = settled(judge_of(), evidence(0.04, 0.01, 0.02))
     assert verdict.component is Component.UNDETERMINED
     assert verdict.level is Level.WARN
 
 
 def test_doubts_are_told_beside_the_name() -> None:
-    verdict = settled(Judge(LIMITS), evidence(0.01, 0.10, doubts=("the speed never left 1650 rpm",)))
+    verdict = settled(judge_of(), evidence(0.01, 0.10, doubts=("the speed never left 1650 rpm",)))
     assert verdict.component is Component.FLEXSPLINE
     assert "1650 rpm" in verdict.reason
 
 
 def test_without_torque_the_larger_one_is_named_without_alarm() -> None:
-    verdict = settled(Judge(LIMITS), evidence(3.0, 1.0, 0.1, relative=True))
+    verdict = settled(judge_of(), evidence(3.0, 1.0, 0.1, relative=True))
     assert (verdict.component, verdict.level) == (Component.CIRCULAR_SPLINE, Level.OK)
     assert "relative" in verdict.reason
-    close = settled(Judge(LIMITS), evidence(1.2, 1.0, 0.3, relative=True))
+    close = settled(judge_of(), evidence(1.2, 1.0, 0.3, relative=True))
     assert close.component is Component.UNDETERMINED
 
 
 def test_a_change_needs_confirmation_and_a_single_outlier_changes_nothing() -> None:
-    judge = Judge(replace(LIMITS, confirm_count=3, confirm_window=5))
+    judge = judge_of(confirm_count=3, confirm_window=5)
     first = [judge.judge(evidence(0.01, 0.02), "") for _ in range(3)]
     assert [v.component for v in first] == [Component.UNDETERMINED, Component.UNDETERMINED, Component.NONE]
     assert judge.judge(evidence(0.01, 0.10), "").component is Component.NONE
@@ -107,7 +109,7 @@ def test_a_change_needs_confirmation_and_a_single_outlier_changes_nothing() -> N
 
 
 def test_while_a_verdict_is_held_its_words_follow_the_evidence() -> None:
-    judge = Judge(replace(LIMITS, confirm_count=2, confirm_window=3))
+    judge = judge_of(confirm_count=2, confirm_window=3)
     settled(judge, evidence(0.01, 0.02))
     held = judge.judge(evidence(0.01, 0.10), "")
     assert held.component is Component.NONE
@@ -116,7 +118,7 @@ def test_while_a_verdict_is_held_its_words_follow_the_evidence() -> None:
 
 
 def test_hysteresis_keeps_an_alarm_until_the_index_is_clearly_below_the_limit() -> None:
-    judge = Judge(LIMITS)
+    judge = judge_of()
     assert settled(judge, evidence(0.01, 0.049)).component is Component.NONE
     assert settled(judge, evidence(0.01, 0.051)).component is Component.FLEXSPLINE
     assert settled(judge, evidence(0.01, 0.047)).component is Component.FLEXSPLINE
@@ -127,7 +129,7 @@ def test_hysteresis_keeps_an_alarm_until_the_index_is_clearly_below_the_limit() 
 
 
 def test_a_latched_verdict_stays_until_reset() -> None:
-    judge = Judge(replace(LIMITS, latch=True))
+    judge = judge_of(latch=True)
     assert settled(judge, evidence(0.01, 0.10)).component is Component.FLEXSPLINE
     held = settled(judge, evidence(0.01, 0.01))
     assert (held.component, held.level) == (Component.FLEXSPLINE, Level.ERROR)
@@ -137,7 +139,7 @@ def test_a_latched_verdict_stays_until_reset() -> None:
 
 
 def test_limits_can_change_while_running() -> None:
-    judge = Judge(LIMITS)
+    judge = judge_of()
     assert settled(judge, evidence(0.01, 0.06)).component is Component.FLEXSPLINE
-    judge.change_limits(replace(LIMITS, warn=0.10, error=0.2))
+    judge.change_limits(replace(JointSettings.from_mapping().diagnosis, warn_index=0.10, error_index=0.2))
     assert settled(judge, evidence(0.01, 0.06)).component is Component.NONE

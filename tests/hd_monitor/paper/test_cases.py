@@ -53,7 +53,7 @@ def test_own_reducer(own):
     assert case.model.circular_spline.phase == (1.0,)
     assert case.model.torque.mean == 20.0
     assert case.model.torque.load_order == 1
-    assert case.settings["dynamics.damping_ratio"] == 0.03
+    assert case.settings.dynamics.damping_ratio == 0.03
     assert case.speeds.values[-1] > 60.0 * 40.0 / case.model.reducer.circular_spline_order  # the resonance is in it
 
 

@@ -6,7 +6,7 @@ import pytest
 
 from hd_monitor.errors import GeometryError, ParameterError
 from hd_monitor.reducer import Mount
-from hd_monitor.settings import INPUT_SOURCES, SENSORLESS_SOURCES, JointSettings
+from hd_monitor.settings import INPUT_SOURCES, PARAMETERS, SENSORLESS_SOURCES, JointSettings
 
 
 def settings(**changes):
@@ -14,7 +14,7 @@ def settings(**changes):
 
 
 def test_limits_are_in_order_by_default():
-    assert 0.0 < settings()["diagnosis.warn_index"] < settings()["diagnosis.error_index"]
+    assert 0.0 < settings().diagnosis.warn_index < settings().diagnosis.error_index
 
 
 def test_nested_and_dotted_names_are_the_same():
@@ -47,9 +47,14 @@ def test_sensorless_sources_are_those_of_joint_states(source):
     assert source.startswith("joint_") == (source in SENSORLESS_SOURCES)
 
 
-def test_an_unknown_name_is_a_key_error():
-    with pytest.raises(KeyError):
-        settings()["reducer.teeth"]
+def test_every_parameter_is_a_typed_field_of_its_group():
+    joint = settings()
+    elsewhere = {"reducer.serial": joint.serial, "dynamics.refine": joint.refine_dynamics}
+    for parameter in PARAMETERS:
+        group, _, field = parameter.name.partition(".")
+        value = elsewhere[parameter.name] if parameter.name in elsewhere else getattr(getattr(joint, group), field)
+        assert value == parameter.default
+        assert type(value) is type(parameter.default) or isinstance(value, Mount)
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ from hd_monitor.settings import NODE_PARAMETERS, set_aside_foreign, split_joints
 
 def test_one_joint_needs_no_name():
     assert list(split_joints({})) == ["joint"]
-    assert split_joints({"reducer": {"serial": "A7"}})["joint"]["reducer.serial"] == "A7"
+    assert split_joints({"reducer": {"serial": "A7"}})["joint"].serial == "A7"
 
 
 @pytest.mark.parametrize("nothing", [[], None])
@@ -26,13 +26,13 @@ def test_common_values_are_shared_and_own_ones_win():
         }
     )
     assert list(joints) == ["elbow", "wrist"]
-    assert [joints[j]["reducer.serial"] for j in joints] == ["E", "W"]
-    assert [joints[j]["diagnosis.warn_index"] for j in joints] == [0.03, 0.02]
+    assert [joints[j].serial for j in joints] == ["E", "W"]
+    assert [joints[j].diagnosis.warn_index for j in joints] == [0.03, 0.02]
 
 
 def test_a_name_that_begins_like_another_is_its_own():
     joints = split_joints({"joints": ["a", "ab"], "a.reducer.serial": "1", "ab.reducer.serial": "2"})
-    assert [joints[j]["reducer.serial"] for j in ("a", "ab")] == ["1", "2"]
+    assert [joints[j].serial for j in ("a", "ab")] == ["1", "2"]
 
 
 @pytest.mark.parametrize("joints", ["elbow", ["a", "a"]])
@@ -74,7 +74,7 @@ def test_what_a_shared_file_holds_for_others_is_set_aside() -> None:
     mine, foreign = set_aside_foreign(given)
     assert foreign == ["load.fluctuation", "stiffness.flexspline"]
     settings = split_joints(mine)["elbow"]
-    assert (settings["load.torque"], settings["input.axis"]) == (3.0, "x")
+    assert (settings.load.torque, settings.input.axis) == (3.0, "x")
 
 
 @pytest.mark.parametrize("name", ["reducer.flexspline_tooth", "diagnosis.warn_idnex", "elbow.sensor.radius"])

@@ -43,9 +43,9 @@ class Collector:
     """
 
     def __init__(self, settings: JointSettings) -> None:
-        reducer, harmonics = settings.reducer, settings["analysis.harmonics"]
-        speeds = SpeedBins(reducer, settings["analysis.rms_bin_width"], settings["analysis.minimum_speed"])
-        self._source: str = settings["input.source"]
+        reducer, harmonics = settings.reducer, settings.analysis.harmonics
+        speeds = SpeedBins(reducer, settings.analysis.rms_bin_width, settings.analysis.minimum_speed)
+        self._source = settings.input.source
         self.settings = settings
         highest = harmonics * max(reducer.circular_spline_order, reducer.flexspline_order) + 1.0
         self.order_map = OrderMapAccumulator(speeds, highest)

@@ -78,7 +78,7 @@ def write_report(
                 "level": Level(entry["verdict"]["level"]).name if entry["verdict"] else "none",
                 "unusable": result.unusable,
                 "figures": [(name, entry["status"][name]) for name in _FIGURES if name in entry.get("status", {})],
-                "unit": unit_of(result.plan.settings["input.source"]),
+                "unit": unit_of(result.plan.settings.input.source),
                 "rows": quality_rows(result, collector),
                 "pictures": list(pictures(result, collector)),
                 "seconds": collector.seconds,

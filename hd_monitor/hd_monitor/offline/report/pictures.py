@@ -78,7 +78,7 @@ def _rpm(assessment: Assessment, output_speed: float) -> float:
 
 def _natural_frequency(last: Assessment, collector: Collector) -> float:
     found = last.identification.natural_frequency if last.identification else float("nan")
-    return found if np.isfinite(found) else float(collector.settings["dynamics.natural_frequency"])
+    return found if np.isfinite(found) else collector.settings.dynamics.natural_frequency
 
 
 def _zoom(last: Assessment, timeline: list[dict[str, Any]], collector: Collector) -> Figure | None:
@@ -98,7 +98,7 @@ def _orders(last: Assessment, timeline: list[dict[str, Any]], collector: Collect
     margin = 4.0 * (pair.flexspline - pair.circular_spline)
     axis = np.linspace(pair.circular_spline - margin, pair.flexspline + margin, _ORDERS_SHOWN)
     spectrum = order_spectrum(angle, values, axis)
-    unit = unit_of(collector.settings["input.source"])
+    unit = unit_of(collector.settings.input.source)
     travel = float(np.degrees(np.ptp(angle)))
     # A Hann window parts lines that are two of its cycles apart; the pair is 2k cycles apart in a revolution.
     note = "" if travel * k >= _PARTING_TRAVEL else f"{travel:.0f}° of travel do not part the lines"
@@ -111,7 +111,7 @@ def _spectrum(last: Assessment, timeline: list[dict[str, Any]], collector: Colle
     if best is None or steady is None:
         return None
     rpm = speed_of(best)
-    pairs = [last.reducer.line_frequencies(rpm, k) for k in range(1, collector.settings["analysis.harmonics"] + 1)]
+    pairs = [last.reducer.line_frequencies(rpm, k) for k in range(1, collector.settings.analysis.harmonics + 1)]
     return spectrum_plot(
         amplitude_spectrum(steady),
         pairs,
@@ -141,7 +141,7 @@ def _rms(last: Assessment, timeline: list[dict[str, Any]], collector: Collector)
 
 
 def _critical(last: Assessment, collector: Collector) -> list[tuple[float, str]]:
-    speeds = critical_speeds(last, _natural_frequency(last, collector), collector.settings["analysis.harmonics"])
+    speeds = critical_speeds(last, _natural_frequency(last, collector), collector.settings.analysis.harmonics)
     named = [(speed, f"k = {k}") for k, speed in enumerate(speeds, start=1)]
     return [*named, (2.0 * speeds[0], "principal instability")]
 
@@ -150,7 +150,7 @@ def _lines(last: Assessment, timeline: list[dict[str, Any]], collector: Collecto
     lines = collector.lines.result()
     if len({line.rpm for line in lines}) < _FEWEST_SPEEDS:
         return None
-    harmonics = collector.settings["analysis.harmonics"]
+    harmonics = collector.settings.analysis.harmonics
     resonances = critical_speeds(last, _natural_frequency(last, collector), harmonics)
     return lines_plot(lines, resonances=resonances, title="Line amplitudes over speed")
 

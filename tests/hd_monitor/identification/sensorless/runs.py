@@ -4,7 +4,7 @@ import numpy as np
 from scipy import stats
 
 from hd_monitor.acquisition.record import JointSamples
-from hd_monitor.diagnosis import Judge, Limits
+from hd_monitor.diagnosis import Judge
 from hd_monitor.identification.sensorless.identifier import SensorlessIdentifier
 from hd_monitor.settings import JointSettings
 
@@ -28,7 +28,7 @@ def identify(samples, parameters):
 
 
 def named(identifier, parameters):
-    judge = Judge(Limits.from_settings(parameters))
+    judge = Judge(parameters)
     for _ in range(3):
         verdict = judge.judge(identifier.estimate(), "nothing yet")
     return verdict.component
