@@ -46,7 +46,7 @@ class Identifier:
     """
 
     def __init__(self, settings: JointSettings, *, sparing: bool = True) -> None:
-        self._minimum_speed = settings["analysis.minimum_speed"] * math.tau / 60.0 / settings.reducer.reduction
+        self._minimum_speed = settings.analysis.minimum_speed * math.tau / 60.0 / settings.reducer.reduction
         self._collector = Collector(self._minimum_speed)
         self._estimation = Estimation(settings)
         self._sparing = sparing

@@ -98,7 +98,7 @@ def plan(bag: Bag, request: Request) -> list[JointPlan]:
     for joint, own in settings.items():
         if request.joints and joint not in request.joints:
             continue
-        topics = finder.joint_topics(own[_SOURCE], joint if several else None)
+        topics = finder.joint_topics(own.input.source, joint if several else None)
         messages = count(topics.vibration), count(topics.motion)
         plans.append(JointPlan(joint=joint, settings=own, topics=topics, messages=messages, notes=tuple(notes)))
     return plans

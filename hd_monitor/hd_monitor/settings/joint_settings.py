@@ -71,10 +71,6 @@ class JointSettings:
             diagnosis=fill_group(values, "diagnosis", DiagnosisSettings),
         )
 
-    def __getitem__(self, name: str) -> Any:
-        """Return the value of the parameter with this dotted name."""
-        return dict(self.values)[name]
-
     @property
     def sensorless(self) -> bool:
         """Whether the vibration signal comes from joint_states alone."""

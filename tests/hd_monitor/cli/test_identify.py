@@ -109,8 +109,8 @@ def test_the_parameter_file_is_one_that_the_monitor_takes(sweep: Path, tmp_path:
     identified(tmp_path, str(sweep), "-p", "dynamics.natural_frequency:=51.0", "--yaml", str(file))
     assert set(yaml.safe_load(file.read_text(encoding="utf-8"))) == {"hd_monitor_node"}
     (settings,) = split_joints(load_parameters(file)).values()
-    assert settings["dynamics.natural_frequency"] == pytest.approx(55.0, abs=0.1)
-    assert settings["dynamics.damping_ratio"] == pytest.approx(0.023, rel=0.05)
+    assert settings.dynamics.natural_frequency == pytest.approx(55.0, abs=0.1)
+    assert settings.dynamics.damping_ratio == pytest.approx(0.023, rel=0.05)
 
 
 def test_two_recordings_tell_more_than_one(sweep: Path, tmp_path: Path) -> None:

@@ -38,9 +38,7 @@ def test_the_file_gives_every_default_back(capsys: pytest.CaptureFixture[str]) -
     monitor, foreign = set_aside_foreign(content["hd_monitor_node"]["ros__parameters"])
     assert not foreign
     settings = split_joints(monitor)["joint"]
-    assert {parameter.name: settings[parameter.name] for parameter in PARAMETERS} == {
-        parameter.name: parameter.default for parameter in PARAMETERS
-    }
+    assert dict(settings.values) == {parameter.name: parameter.default for parameter in PARAMETERS}
     rig = RigSettings.from_mapping(pick(content["hd_sim_node"]["ros__parameters"], RIG_NODE_PARAMETERS))
     assert rig == RigSettings.from_mapping()
 

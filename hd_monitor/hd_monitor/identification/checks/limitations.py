@@ -99,8 +99,8 @@ class Scrutiny:
 
     def __init__(self, settings: JointSettings) -> None:
         self._reducer = settings.reducer
-        self._warn: float = settings["diagnosis.warn_index"]
-        self._refine: bool = settings["dynamics.refine"]
+        self._warn = settings.diagnosis.warn_index
+        self._refine = settings.refine_dynamics
 
     def examine(self, suspect: Suspect) -> Findings:
         """Return what is doubtful about a result."""

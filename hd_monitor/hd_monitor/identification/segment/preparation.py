@@ -39,7 +39,7 @@ class Preparation:
 
     def __init__(self, settings: JointSettings, unknowns: Unknowns, prior: Information) -> None:
         self._given = settings.dynamics
-        self._torque: float = settings["load.torque"] if settings["load.source"] in ("auto", "parameter") else 0.0
+        self._torque = settings.load.torque if settings.load.source in ("auto", "parameter") else 0.0
         self._unknowns = unknowns
         self._prior = prior
         self._builder = SegmentBuilder(
@@ -47,7 +47,7 @@ class Preparation:
             harmonics=unknowns.harmonics,
             load_orders=unknowns.load_orders,
             natural_frequency=self._given.natural_frequency,
-            inertial=settings["input.source"] == "imu",
+            inertial=settings.input.source == "imu",
         )
         self.nominal_torque: float | None = None
         self.mounting = 1.0

@@ -73,19 +73,19 @@ class SensorlessIdentifier:
     def __init__(self, settings: JointSettings) -> None:
         self._settings = settings
         self._reducer = settings.reducer
-        self._memory: float = settings["analysis.memory"]
-        self._ratio: float = settings["diagnosis.both_ratio"]
-        self._confidence: float = settings["diagnosis.confidence"]
+        self._memory = settings.analysis.memory
+        self._ratio = settings.diagnosis.both_ratio
+        self._confidence = settings.diagnosis.confidence
         reduction = self._reducer.reduction
         cs, fs = self._reducer.output_orders
         motor = (reduction, 2.0 * reduction)
-        self._harmonics = range(1, settings["analysis.harmonics"] + 1)
+        self._harmonics = range(1, settings.analysis.harmonics + 1)
         self._orders = [PairOrders.around(LinePair(cs, fs), k, motor) for k in self._harmonics]
         # Teeth near those given share a line with them, or lie where travel does not part them: they are watched, too.
         self._neighbours = [LinePair(cs + shift, fs + shift) for shift in NEIGHBOURS]
         self._orders += [PairOrders.around(pair, 1, motor) for pair in self._neighbours]
-        minimum_speed = settings["analysis.minimum_speed"] * 2.0 * np.pi / 60.0 / reduction
-        self._cutter = JointSegmentCutter(settings["input.source"], (cs, fs), minimum_speed)
+        minimum_speed = settings.analysis.minimum_speed * 2.0 * np.pi / 60.0 / reduction
+        self._cutter = JointSegmentCutter(settings.input.source, (cs, fs), minimum_speed)
         self._pooled: deque[_Pooled] = deque()
         self._coefficients = np.ones(1)
         self._learnt = 0.0
@@ -104,7 +104,7 @@ class SensorlessIdentifier:
 
     def add(self, samples: JointSamples) -> None:
         """Add joint states, in the order of their stamps; how they are grouped into calls does not matter."""
-        signal = samples.effort if self._settings["input.source"] == "joint_effort" else samples.speed
+        signal = samples.effort if self._settings.input.source == "joint_effort" else samples.speed
         self._messages += len(samples)
         self._usable += int(np.count_nonzero(np.isfinite(signal)))
         for segment in self._cutter.add(samples):
@@ -117,7 +117,7 @@ class SensorlessIdentifier:
             self._stale = False
         if self._latest is None:
             complaints = complaints_about(
-                self._settings["input.source"], messages=self._messages, usable=self._usable, too_fast=self._too_fast
+                self._settings.input.source, messages=self._messages, usable=self._usable, too_fast=self._too_fast
             )
             return self._nothing(complaints) if complaints else None
         return self._latest

@@ -41,7 +41,7 @@ class Conclusions:
     def __init__(self, settings: JointSettings, unknowns: Unknowns) -> None:
         self._settings = settings
         self._unknowns = unknowns
-        self._warn: float = settings["diagnosis.warn_index"]
+        self._warn = settings.diagnosis.warn_index
         self._scrutiny = Scrutiny(settings)
 
     def sureness(self, result: Identification) -> float:

@@ -76,9 +76,9 @@ class Estimation:
     def __init__(self, settings: JointSettings) -> None:
         self._given = settings.dynamics
         self._reducer = settings.reducer
-        self._refine: bool = settings["dynamics.refine"]
-        self._memory: float = settings["analysis.memory"]
-        self._unknowns = u = Unknowns(harmonics=settings["analysis.harmonics"], load_orders=LOAD_ORDERS)
+        self._refine = settings.refine_dynamics
+        self._memory = settings.analysis.memory
+        self._unknowns = u = Unknowns(harmonics=settings.analysis.harmonics, load_orders=LOAD_ORDERS)
         self._std = u.given_std()
         self._prior = Information.gaussian(self._std)
         self._preparation = Preparation(settings, u, self._prior)
