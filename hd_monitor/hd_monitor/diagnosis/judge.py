@@ -7,6 +7,7 @@ from typing import NamedTuple
 from ..identification.result import Identification
 from ..reducer import Mount
 from ..settings import DiagnosisSettings, JointSettings
+from .limitations import describe_limitation
 from .probability import Probabilities, component_probabilities, name_component
 from .verdict import Component, FaultCode, Level, Verdict
 from .wording import (
@@ -124,7 +125,8 @@ class Judge:
 
     def _assess(self, evidence: Identification) -> Verdict:
         if evidence.blockers:
-            return self._undetermined("; ".join(evidence.blockers))  # nor do blocked indexes carry a level
+            # Blocked indexes carry no level either
+            return self._undetermined("; ".join(map(describe_limitation, evidence.blockers)))
         if evidence.relative:
             return self._assess_relative(evidence)
         limits = self._limits

@@ -3,6 +3,7 @@
 import math
 
 from ..identification.result import Identification
+from .limitations import describe_limitation
 from .probability import Probabilities
 from .verdict import Component, Level
 
@@ -30,7 +31,7 @@ def _indexes(evidence: Identification) -> str:
 
 
 def _with_doubts(sentence: str, evidence: Identification) -> str:
-    return "; ".join([sentence, *evidence.doubts])
+    return "; ".join([sentence, *map(describe_limitation, evidence.doubts)])
 
 
 def describe_component(

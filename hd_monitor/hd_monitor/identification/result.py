@@ -2,12 +2,13 @@
 
 import functools
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from ..arrays import ComplexArray, FloatArray
 from ..model.parameters import ParametricModel
 from ..reducer import LinePair
 from .checks.critical_speed import critical_speed
+from .limitation import Limitation
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -58,11 +59,8 @@ class Identification:
         Identified amplitude of the unknown load fluctuation [N·m].
     model : ParametricModel or None
         The reducer as identified, without its load; None where the indexes are relative.
-    doubts : tuple of str
-        What weakens the result, in words for a technician ("natural frequency 48.9 Hz fits far better than …").
-        A doubt that forbids naming a part goes into `blockers` instead.
-    blockers : tuple of str
-        Reasons why no part may be named on this evidence, with what is missing.
+    limitations : tuple of Limitation
+        What weakens the result, or forbids naming a part on it.
     """
 
     circular_spline: ComplexArray
@@ -83,9 +81,18 @@ class Identification:
     load_fluctuation: float = 0.0
     load_fluctuation_std: float = float("nan")
     model: ParametricModel | None = None
-    doubts: tuple[str, ...] = field(default=())
-    blockers: tuple[str, ...] = field(default=())
+    limitations: tuple[Limitation, ...] = ()
     beta_covariance: FloatArray | None = None
+
+    @property
+    def doubts(self) -> tuple[Limitation, ...]:
+        """Limitations that only weaken the result."""
+        return tuple(limitation for limitation in self.limitations if not limitation.blocks)
+
+    @property
+    def blockers(self) -> tuple[Limitation, ...]:
+        """Limitations that forbid naming a part."""
+        return tuple(limitation for limitation in self.limitations if limitation.blocks)
 
     @property
     def critical_speed(self) -> float:

@@ -8,6 +8,7 @@ from typing import Any
 
 from ..acquisition.quality import Quality
 from ..assessment import Assessment
+from ..diagnosis.limitations import describe_limitation
 from ..errors import ParameterError
 from ..identification.identifier import Identifier
 from ..identification.result import Identification
@@ -77,7 +78,7 @@ class JointIdentification:
             return "; ".join(self.complaints)
         if self.found is None or not self.found.samples:
             blockers = self.found.blockers if self.found else ()
-            reason = blockers[0] if blockers else self.last.verdict.reason if self.last else ""
+            reason = describe_limitation(blockers[0]) if blockers else self.last.verdict.reason if self.last else ""
             return f"joint {self.plan.joint!r}: nothing to identify in {', '.join(self.bags)}: {reason}"
         return ""
 

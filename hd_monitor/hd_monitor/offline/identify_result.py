@@ -9,6 +9,7 @@ import yaml
 
 from .. import __version__
 from ..acquisition.quality import Quality
+from ..diagnosis.limitations import describe_limitation
 from ..identification.teeth.ranking import ToothPairRanking
 from . import identify_numbers as numbers
 from .identify import JointIdentification
@@ -69,8 +70,8 @@ def joint_entry(joint: JointIdentification) -> dict[str, Any]:
         "samples": found.samples,
         "signal_to_noise_db": found.signal_to_noise,
         "misfit": found.misfit,
-        "doubts": list(found.doubts),
-        "blockers": list(found.blockers),
+        "doubts": [describe_limitation(doubt) for doubt in found.doubts],
+        "blockers": [describe_limitation(blocker) for blocker in found.blockers],
         "teeth": _teeth(joint.teeth),
         "quality": quality_sums(joint.qualities),
         "parameters": dict(settings.values),
@@ -152,7 +153,7 @@ def teeth_contradict(joint: JointIdentification) -> bool:
 def _why_not(joint: JointIdentification) -> str:
     found = joint.found
     if found is not None and found.blockers:
-        return found.blockers[0]
+        return describe_limitation(found.blockers[0])
     if joint.settings.sensorless:
         return "joint states alone tell neither natural frequency nor damping, and the tooth check is not conclusive"
     return "the recordings tell neither natural frequency nor damping: vary the speed, best in a sweep over fn"

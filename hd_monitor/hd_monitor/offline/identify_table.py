@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator
 
+from ..diagnosis.limitations import describe_limitation
 from ..identification.result import Identification
 from . import identify_numbers as numbers
 from .identify import JointIdentification
@@ -33,9 +34,9 @@ def _head(joint: JointIdentification, found: Identification) -> Iterator[str]:
             f"{given.circular_spline_teeth}, so nothing below holds: correct reducer.* and identify again"
         )
     for blocker in found.blockers:
-        yield f"  no part can be named: {blocker}"
+        yield f"  no part can be named: {describe_limitation(blocker)}"
     for doubt in found.doubts:
-        yield f"  note: {doubt}"
+        yield f"  note: {describe_limitation(doubt)}"
     for note in joint.plan.notes:
         yield f"  note: {note}"
 

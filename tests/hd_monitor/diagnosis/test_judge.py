@@ -7,6 +7,7 @@ import pytest
 
 from hd_monitor.diagnosis.judge import Judge
 from hd_monitor.diagnosis.verdict import Component, FaultCode, Level, Verdict
+from hd_monitor.identification.limitation import LimitationCode, blocker, doubt
 from hd_monitor.identification.result import Identification
 from hd_monitor.reducer import LinePair
 from hd_monitor.settings import JointSettings
@@ -66,7 +67,14 @@ def test_no_evidence_is_undetermined_and_says_what_is_missing() -> None:
 
 
 def test_blockers_forbid_a_name() -> None:
-    verdict = settled(judge_of(), evidence(0.01, 0.10, blockers=("only 20° of travel, 90° needed",)))
+    verdict = settled(
+        judge_of(),
+        evidence(
+            0.01,
+            0.10,
+            limitations=(blocker(LimitationCode.TRAVEL_TOO_SHORT, travel_deg=20.0, needed_deg=90.0, missing_deg=70.0),),
+        ),
+    )
     assert (verdict.component, verdict.level) == (Component.UNDETERMINED, Level.WARN)
     assert "20°" in verdict.reason
 
@@ -85,9 +93,11 @@ def test_a_vague_index_beside_the_limit_is_not_called_sound() -> None:
 
 
 def test_doubts_are_told_beside_the_name() -> None:
-    verdict = settled(judge_of(), evidence(0.01, 0.10, doubts=("the speed never left 1650 rpm",)))
+    verdict = settled(
+        judge_of(), evidence(0.01, 0.10, limitations=(doubt(LimitationCode.MOTION_STAMPS_LAG, delay_ms=16.5),))
+    )
     assert verdict.component is Component.FLEXSPLINE
-    assert "1650 rpm" in verdict.reason
+    assert "16.5 ms" in verdict.reason
 
 
 def test_without_torque_the_larger_one_is_named_without_alarm() -> None:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from tests.benchmarks.estimator_cases import Case, simulate
 
+from hd_monitor.diagnosis.limitations import describe_limitation
 from hd_monitor.identification.identifier import Identifier
 from hd_monitor.model import Dynamics, ParametricModel, StiffnessSeries, Torque, line_pairs
 
@@ -71,10 +72,10 @@ def test_a_wrong_natural_frequency_is_noticed(factor, motion):
     wrong = {"dynamics.natural_frequency": 55.0 * factor}
     result = identify(simulate(truth), truth.settings(**wrong))
     assert result.natural_frequency == pytest.approx(55.0, rel=0.01)
-    assert any("natural frequency" in doubt for doubt in result.doubts)
+    assert any("natural frequency" in describe_limitation(doubt) for doubt in result.doubts)
     assert_right(result, truth)
     kept = identify(simulate(truth), truth.settings(**wrong, **{"dynamics.refine": False}))
-    assert any("natural frequency" in text or "not explained" in text for text in kept.blockers)
+    assert any("natural frequency" in text or "not explained" in describe_limitation(text) for text in kept.blockers)
 
 
 def test_a_lag_between_the_clocks_is_noticed():
@@ -86,7 +87,7 @@ def test_a_lag_between_the_clocks_is_noticed():
     records = [replace(r, acceleration=row) for r, row in zip(records, late, strict=True)]
     result = identify(records, truth.settings())
     assert_right(result, truth)
-    assert any("lag" in doubt for doubt in result.doubts)
+    assert any("lag" in describe_limitation(doubt) for doubt in result.doubts)
 
 
 def test_a_sensor_that_points_the_other_way_changes_nothing():
@@ -136,7 +137,7 @@ def test_line_amplitudes_are_those_of_the_steady_state():
 def test_too_little_travel_is_said_with_what_is_missing():
     truth = case(duration=4.0, speed=150.0)
     result = identify(simulate(truth), truth.settings())
-    (reason,) = result.blockers
+    (reason,) = map(describe_limitation, result.blockers)
     travel = np.degrees(result.travel)
     assert f"{travel:.0f}° of output travel" in reason
     assert f"{np.ceil(85.0 - travel):.0f}° more" in reason

@@ -15,6 +15,7 @@ from ...orders.pair import PairEstimate, estimate_pair
 from ...orders.whitening import learn_whitening
 from ...reducer import LinePair
 from ...settings import JointSettings
+from ..limitation import Limitation, LimitationCode
 from ..result import Identification, LineEstimate
 from .agreement import DirectionEvidence, other_teeth, reasons_against_naming
 from .doubts import STILL, complaints_about, doubts_about
@@ -207,14 +208,17 @@ class SensorlessIdentifier:
             samples=sum(pair.rows for pair in pairs),
             signal_to_noise=10.0 * float(np.log10(0.5 * total**2 / noise)),
             misfit=float(np.mean([pair.floor for pair in pairs])),
-            doubts=doubts_about(
-                LinePair(float(cs), float(fs)),
-                self._reducer,
-                one_speed=one_speed(pooled.segment for pooled in self._pooled),
-                too_fast=self._too_fast,
-            ),
-            blockers=self._other_teeth(groups, pairs)
-            + reasons_against_naming(self._directions, self._reducer.output_orders, self._confidence),
+            limitations=_said(
+                False,
+                doubts_about(
+                    LinePair(float(cs), float(fs)),
+                    self._reducer,
+                    one_speed=one_speed(pooled.segment for pooled in self._pooled),
+                    too_fast=self._too_fast,
+                ),
+            )
+            + _said(True, self._other_teeth(groups, pairs))
+            + _said(True, reasons_against_naming(self._directions, self._reducer.output_orders, self._confidence)),
             load_fluctuation=math.nan,
         )
 
@@ -270,9 +274,13 @@ class SensorlessIdentifier:
             index=LinePair(0.0, 0.0),
             index_std=LinePair(float("inf"), float("inf")),
             relative=True,
-            blockers=reasons,
+            limitations=_said(True, reasons),
             load_fluctuation=math.nan,
         )
+
+
+def _said(blocks: bool, texts: tuple[str, ...]) -> tuple[Limitation, ...]:
+    return tuple(Limitation(code=LimitationCode.OTHER, blocks=blocks, values={"text": text}) for text in texts)
 
 
 def _mean_amplitudes(pairs: list[PairEstimate]) -> tuple[FloatArray, FloatArray]:

@@ -10,7 +10,7 @@ from ...model.parameters import Dynamics, ParametricModel, StiffnessSeries, Torq
 from ...orders.line_amplitudes import measure_lines
 from ...settings import JointSettings
 from ..checks.coverage import Coverage
-from ..checks.limitations import Scrutiny, Suspect
+from ..checks.limitations import FitSummary, limitations_of
 from ..checks.residual import LineResidual
 from ..fit.information import Information
 from ..fit.linearisation import Predictor
@@ -42,7 +42,6 @@ class Conclusions:
         self._settings = settings
         self._unknowns = unknowns
         self._warn = settings.diagnosis.warn_index
-        self._scrutiny = Scrutiny(settings)
 
     def sureness(self, result: Identification) -> float:
         """Standard deviation of the indexes that satisfies, over what they have; 0 where no part may be named."""
@@ -57,7 +56,7 @@ class Conclusions:
         values: FloatArray,
         active: BoolArray,
         information: Information,
-        scores: Mapping[int, ScoreTest],
+        score_tests: Mapping[int, ScoreTest],
         misfit: LineResidual,
         coverage: Coverage,
         recent: Sequence[Segment],
@@ -78,20 +77,22 @@ class Conclusions:
         strongest = int(np.argmax(np.abs(loads)))
         load_std = math.sqrt(covariance[u.load, u.load].diagonal().reshape(2, -1).sum(axis=0)[strongest] / 2.0)
         snr = _signal_to_noise(evidence)
-        findings = self._scrutiny.examine(
-            Suspect(
+        limitations = limitations_of(
+            FitSummary(
                 predictor=predictor,
                 values=values,
                 active=active,
                 indexes=indexes,
-                scores=scores,
+                score_tests=score_tests,
                 inflation=inflation,
                 unexplained=misfit.unexplained,
                 highest_frequency=recent[-1].raw_highest,
                 coverage=coverage,
                 signal_to_noise=snr,
                 relative=relative,
-            )
+            ),
+            self._settings.reducer,
+            self._warn,
         )
         return Identification(
             circular_spline=u.phasors(values, u.circular_spline),
@@ -112,8 +113,7 @@ class Conclusions:
             load_fluctuation=reference * float(abs(loads[strongest])),
             load_fluctuation_std=reference * load_std,
             model=None if relative else self._model(dynamics, values),
-            doubts=findings.doubts,
-            blockers=findings.blockers,
+            limitations=limitations,
             beta_covariance=np.stack([_of_phasors(covariance, part) for part in (u.circular_spline, u.flexspline)]),
         )
 

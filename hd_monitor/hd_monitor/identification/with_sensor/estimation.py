@@ -29,6 +29,7 @@ from ..fit.noise import NoiseFloor
 from ..fit.normal_equations import LinearisedSegment
 from ..fit.score_test import ScoreTest, score_tests
 from ..fit.unknowns import Unknowns
+from ..limitation import Limitation, LimitationCode
 from ..result import Identification
 from ..segment.preparation import Preparation
 from ..segment.segment import Segment
@@ -325,7 +326,7 @@ class Estimation:
             values=fit.values,
             active=self._active,
             information=information,
-            scores=self._scores(places, information, fit.values),
+            score_tests=self._scores(places, information, fit.values),
             misfit=self._line_residual,
             coverage=self._coverage,
             recent=self._recent,
@@ -334,4 +335,5 @@ class Estimation:
             relative=self._preparation.nominal_torque is not None,
         )
         if blocker := self._teeth.blocker(self._reducer):
-            self.result = replace(self.result, blockers=(blocker, *self.result.blockers))
+            said = Limitation(code=LimitationCode.OTHER, blocks=True, values={"text": blocker})
+            self.result = replace(self.result, limitations=(said, *self.result.limitations))

@@ -14,6 +14,7 @@ from tests.hd_monitor.identification.sensorless.runs import (
 
 from hd_monitor.acquisition.record import JointSamples
 from hd_monitor.diagnosis import Component
+from hd_monitor.diagnosis.limitations import describe_limitation
 from hd_monitor.identification.sensorless.identifier import SensorlessIdentifier
 from hd_monitor.reducer import LinePair
 
@@ -72,7 +73,7 @@ def test_directions_that_contradict_each_other_leave_it_undetermined():
     mixed = JointSamples(times=whole.times, angle=whole.angle, speed=whole.speed, effort=effort)
     identifier = identify(mixed, settings_of())
     assert named(identifier, settings_of()) is Component.UNDETERMINED
-    assert "do not agree on the larger line" in identifier.estimate().blockers[0]
+    assert "do not agree on the larger line" in describe_limitation(identifier.estimate().blockers[0])
 
 
 @settings(max_examples=10)
@@ -130,7 +131,7 @@ def test_both_mounts_and_a_word_on_the_motor_where_it_shares_the_line(mount, cs,
     identifier = identify(swinging(cs, fs), parameters)
     assert named(identifier, parameters) is (Component.CIRCULAR_SPLINE if cs > fs else Component.FLEXSPLINE)
     shared = (mount == "circular_spline_fixed") == (cs > fs)
-    assert any("check the motor" in doubt for doubt in identifier.estimate().doubts) is shared
+    assert any("check the motor" in describe_limitation(doubt) for doubt in identifier.estimate().doubts) is shared
 
 
 def test_one_direction_is_split_in_time():
@@ -148,8 +149,9 @@ def test_a_single_speed_is_doubted():
     angle = 0.5 * times
     effort = 0.2 * np.cos(160 * angle) + 0.1 * np.random.default_rng(1).standard_normal(times.size)
     samples = JointSamples(times=times, angle=angle, speed=np.full(times.size, 0.5), effort=effort)
-    assert any("one speed" in doubt for doubt in identify(samples, settings_of()).estimate().doubts)
-    assert not any("one speed" in doubt for doubt in identify(swinging(), settings_of()).estimate().doubts)
+    steady, varied = (identify(motion, settings_of()).estimate() for motion in (samples, swinging()))
+    assert any("one speed" in describe_limitation(doubt) for doubt in steady.doubts)
+    assert not any("one speed" in describe_limitation(doubt) for doubt in varied.doubts)
 
 
 def test_velocity_as_the_signal():
@@ -194,13 +196,13 @@ def test_says_nothing_before_anything_came():
 
 def test_one_stroke_is_not_enough():
     found = identify(part(swinging(), slice(0, 500)), settings_of()).estimate()
-    assert "One stroke only" in found.blockers[0]
+    assert "One stroke only" in describe_limitation(found.blockers[0])
 
 
 def test_a_missing_field_is_named_with_the_way_out():
     whole = swinging()
     blind = JointSamples(times=whole.times, angle=whole.angle, speed=whole.speed, effort=np.full(len(whole), np.nan))
-    (reason,) = identify(blind, settings_of()).estimate().blockers
+    (reason,) = map(describe_limitation, identify(blind, settings_of()).estimate().blockers)
     assert "no effort" in reason
     assert "joint_velocity" in reason
 
@@ -208,13 +210,13 @@ def test_a_missing_field_is_named_with_the_way_out():
 def test_a_constant_signal_is_named():
     whole = swinging()
     dead = JointSamples(times=whole.times, angle=whole.angle, speed=whole.speed, effort=np.zeros(len(whole)))
-    assert "does not change at all" in identify(dead, settings_of()).estimate().blockers[0]
+    assert "does not change at all" in describe_limitation(identify(dead, settings_of()).estimate().blockers[0])
 
 
 def test_too_fast_for_the_rate_is_named():
     times = np.arange(0.0, 30.0, 0.01)
     samples = JointSamples(times=times, angle=3.0 * times, speed=np.full(times.size, 3.0), effort=np.sin(times))
-    (reason,) = identify(samples, settings_of()).estimate().blockers
+    (reason,) = map(describe_limitation, identify(samples, settings_of()).estimate().blockers)
     assert "too fast" in reason
 
 
@@ -230,7 +232,9 @@ def test_wrong_teeth_are_noticed():
         swinging(0.5, 0.2, teeth=(160, 162)),
         settings_of(reducer__flexspline_teeth=150, reducer__circular_spline_teeth=152),
     )
-    assert any("check reducer.flexspline_teeth" in reason for reason in identifier.estimate().blockers)
+    assert any(
+        "check reducer.flexspline_teeth" in text for text in map(describe_limitation, identifier.estimate().blockers)
+    )
 
 
 @pytest.mark.parametrize("given", [198, 199, 201, 202])
@@ -242,7 +246,7 @@ def test_teeth_near_the_right_ones_name_no_part(given):
     effort += 0.1 * rng.standard_normal(times.size)
     samples = JointSamples(times=times, angle=angle, speed=0.8 * np.cos(0.5 * times), effort=effort)
     wrong = settings_of(reducer__flexspline_teeth=given, reducer__circular_spline_teeth=given + 2)
-    (first, *_) = identify(samples, wrong).estimate().blockers
+    (first, *_) = map(describe_limitation, identify(samples, wrong).estimate().blockers)
     assert "200/202 teeth" in first
     right = settings_of(reducer__flexspline_teeth=200, reducer__circular_spline_teeth=202)
     assert identify(samples, right).estimate().blockers == ()

@@ -10,6 +10,7 @@ from tests.hd_monitor.identification.sensorless.runs import (
 )
 
 from hd_monitor.diagnosis import Component
+from hd_monitor.diagnosis.limitations import describe_limitation
 from hd_monitor.diagnosis.status import status_of
 from hd_monitor.monitor import Monitor
 
@@ -111,4 +112,4 @@ def test_no_lines_are_found_where_there_are_none(ur10e, source):
 def test_wrong_teeth_near_by_are_noticed_on_the_real_arm(ur10e):
     other = UR10E | {"reducer__flexspline_teeth": 190, "reducer__circular_spline_teeth": 192}
     blockers = identify(ur10e(LONG, 2), settings_of(**other)).estimate().blockers
-    assert any("stronger line at about 200" in reason for reason in blockers)
+    assert any("stronger line at about 200" in describe_limitation(reason) for reason in blockers)

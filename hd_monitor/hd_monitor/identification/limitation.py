@@ -1,0 +1,59 @@
+"""What limits a result, as a code with its numbers; :mod:`hd_monitor.diagnosis.limitations` has the sentences."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+
+class LimitationCode(StrEnum):
+    """Kinds of limitation."""
+
+    # What was given contradicts the data
+    NATURAL_FREQUENCY_CORRECTED = "natural_frequency_corrected"
+    NATURAL_FREQUENCY_CONTRADICTED = "natural_frequency_contradicted"
+    DAMPING_CORRECTED = "damping_corrected"
+    MOTION_STAMPS_LAG = "motion_stamps_lag"
+    VIBRATION_STAMPS_LAG = "vibration_stamps_lag"
+    TORQUE_TOO_SMALL = "torque_too_small"
+    TORQUE_TOO_LARGE = "torque_too_large"
+    TORQUE_ABSURD = "torque_absurd"
+    # What the signal does not show
+    NATURAL_FREQUENCY_BEYOND_RATE = "natural_frequency_beyond_rate"
+    LINES_BEYOND_RATE = "lines_beyond_rate"
+    TRAVEL_TOO_SHORT = "travel_too_short"
+    MOTION_TOO_SHORT = "motion_too_short"
+    LINES_TOO_WEAK = "lines_too_weak"
+    # What the model does not explain
+    LINES_UNEXPLAINED = "lines_unexplained"
+    UNCERTAINTY_WIDENED = "uncertainty_widened"
+    NEAR_RESONANCE = "near_resonance"
+    # Transitional
+    OTHER = "other"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Limitation:
+    """One reason to doubt a result, or not to name a part on it.
+
+    Attributes
+    ----------
+    code : LimitationCode
+    blocks : bool
+        Whether it forbids naming a part; else it only weakens the result.
+    values : mapping of str to float or str
+        What its sentence states; the unit is in the name.
+    """
+
+    code: LimitationCode
+    blocks: bool
+    values: Mapping[str, float | str] = field(default_factory=dict)
+
+
+def doubt(code: LimitationCode, **values: float | str) -> Limitation:
+    """Return a limitation that weakens a result."""
+    return Limitation(code=code, blocks=False, values=values)
+
+
+def blocker(code: LimitationCode, **values: float | str) -> Limitation:
+    """Return a limitation that forbids naming a part."""
+    return Limitation(code=code, blocks=True, values=values)

@@ -1,0 +1,22 @@
+"""Every limitation has a sentence, and the checks supply what it states."""
+
+from string import Formatter
+
+import pytest
+
+from hd_monitor.diagnosis.limitations import SENTENCES, describe_limitation
+from hd_monitor.identification.limitation import LimitationCode, blocker
+
+
+@pytest.mark.parametrize("code", LimitationCode)
+def test_every_code_has_a_sentence_that_its_values_fill(code: LimitationCode) -> None:
+    fields = {name: spec for _, name, spec, _ in Formatter().parse(SENTENCES[code]) if name}
+    values = {name: 12.5 if spec else "word" for name, spec in fields.items()}
+    sentence = describe_limitation(blocker(code, **values))
+    assert "{" not in sentence
+    assert sentence.count("12") + sentence.count("13") + sentence.count("word") >= len(fields)
+
+
+def test_a_missing_value_is_an_error_not_a_gap_in_the_sentence() -> None:
+    with pytest.raises(KeyError, match="travel_deg"):
+        describe_limitation(blocker(LimitationCode.TRAVEL_TOO_SHORT, needed_deg=85.0, missing_deg=1.0))
