@@ -12,8 +12,9 @@ from pathlib import Path
 from ..errors import HdMonitorError
 from ..paper.cases import has_cases, load_own_case, load_paper_cases
 from ..paper.claim import Outcome
-from ..paper.own_reducer import FIGURES, show
-from ..paper.reproduction import EXHIBITS, all_claims, reproduce
+from ..paper.exhibit import all_claims
+from ..paper.own_reducer import FIGURES
+from ..paper.reproduction import EXHIBITS, compute
 from ..paper.table import claim_table, fact_table
 
 _WIDEST = 120
@@ -70,12 +71,12 @@ def run(arguments: argparse.Namespace) -> int:
                 "figures; right if others share the file, else check the spelling",
                 file=sys.stderr,
             )
-        exhibits = show(case, arguments.only, _progress(arguments))
+        exhibits = compute(FIGURES, case, arguments.only, _progress(arguments))
         print(fact_table(exhibits))
         heading = f"Torsional vibration of the reducer in {arguments.params.name}"
     else:
         cases = load_paper_cases(arguments.params)
-        exhibits = reproduce(cases, arguments.only, _progress(arguments))
+        exhibits = compute(EXHIBITS, cases, arguments.only, _progress(arguments))
         width = min(shutil.get_terminal_size((100, 24)).columns, _WIDEST)
         print(claim_table(exhibits, max(width, 60)))
         heading = "Torsional vibration of a harmonic driver (Gu et al. 2021), reproduced"

@@ -5,7 +5,7 @@ from enum import StrEnum
 
 
 class Outcome(StrEnum):
-    """What laying a claim beside our number gave."""
+    """Result of holding a claim against our number."""
 
     PASS = "pass"
     FAIL = "FAIL"
@@ -19,8 +19,6 @@ class Claim:
 
     Attributes
     ----------
-    id : str
-        The figure, table or equation, as in ``F13c``.
     statement : str
         What is claimed.
     paper, ours : str
@@ -33,17 +31,12 @@ class Claim:
         Whether the paper contradicts itself here.
     """
 
-    id: str
     statement: str
     paper: str
     ours: str
     passed: bool
     note: str = ""
     contradiction: bool = False
-
-    def __post_init__(self) -> None:
-        """Take numpy's booleans too."""
-        object.__setattr__(self, "passed", bool(self.passed))
 
     @property
     def outcome(self) -> Outcome:

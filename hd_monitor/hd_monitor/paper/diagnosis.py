@@ -1,4 +1,4 @@
-"""The monitor itself, fed with the simulated vibration of a case: what it would say of the paper's drivers."""
+"""The verdict of the monitor itself, fed with the simulated vibration of a case."""
 
 import math
 
@@ -14,22 +14,13 @@ from .records import steady_record
 SENSOR_NOISE = 0.2
 """Standard deviation of the noise put on the vibration [rad/s²]: 11 mg at 0.55 m, an ordinary MEMS sensor's."""
 
-OUTPUT_REVOLUTIONS = 4
 _MOTION_RATE = 100.0  # Hz, of the joint states
 _BLOCKS_PER_SECOND = 5
 _SEED = 2021
 
 
-def diagnose(case: Case, speed: float, *, revolutions: int = OUTPUT_REVOLUTIONS) -> Assessment:
-    """Let a monitor that knows the reducer, but none of its defects, watch a steady run.
-
-    Parameters
-    ----------
-    case : Case
-    speed : float
-        Wave-generator speed [rpm].
-    revolutions : int
-        Output revolutions watched.
+def diagnose(case: Case) -> Assessment:
+    """Let a monitor that knows the reducer, but none of its defects, watch a steady run at the case's speed.
 
     Returns
     -------
@@ -41,7 +32,7 @@ def diagnose(case: Case, speed: float, *, revolutions: int = OUTPUT_REVOLUTIONS)
     HdMonitorError
         If the run is too short for an assessment.
     """
-    record = steady_record(case.model, speed, revolutions)
+    record = steady_record(case.model, case.speed)
     response = record.response
     noise = np.random.default_rng(_SEED).normal(0.0, SENSOR_NOISE, response.times.size)
     samples = response.acceleration + noise
@@ -53,16 +44,15 @@ def diagnose(case: Case, speed: float, *, revolutions: int = OUTPUT_REVOLUTIONS)
     angle = response.output_angle[0] + omega * motion
     stamps = np.rint(motion * NANOSECONDS).astype(np.int64)
     monitor.add_motion(stamps, angle, np.full(motion.size, omega), np.full(motion.size, np.nan))
-    for number, part in enumerate(
-        np.array_split(np.arange(samples.size), max(1, round(motion[-1] * _BLOCKS_PER_SECOND)))
-    ):
+    blocks = np.array_split(np.arange(samples.size), max(1, round(motion[-1] * _BLOCKS_PER_SECOND)))
+    for number, part in enumerate(blocks):
         start = round(float(response.times[part[0]]) * NANOSECONDS)
         monitor.add_block(Block(start, period, number, samples[part]))
     assessment = monitor.finish()
     if assessment is None:
         raise HdMonitorError(
-            f"{revolutions} output revolutions at {speed:g} rpm last {response.times[-1]:.2f} s, too short for "
-            "the monitor; watch more of them"
+            f"{record.revolutions} output revolutions at {case.speed:g} rpm last {response.times[-1]:.2f} s, too "
+            "short for the monitor; choose a lower speed"
         )
     return assessment
 
@@ -73,7 +63,5 @@ def verdict_words(assessment: Assessment) -> str:
     words = f"{verdict.component.value} ({verdict.level.name})"
     if found is None:
         return words
-    return words + "; " + ", ".join(
-        f"{name} {index:.2%} ± {std:.2%}"
-        for name, index, std in zip(("circular spline", "flexspline"), found.index, found.index_std, strict=True)
-    )  # fmt: skip
+    (circular, flex), (circular_std, flex_std) = found.index, found.index_std
+    return f"{words}; circular spline {circular:.2%} ± {circular_std:.2%}, flexspline {flex:.2%} ± {flex_std:.2%}"

@@ -1,6 +1,7 @@
-"""What a figure's module hands over: data to draw and claims to print. Nothing here knows how to draw."""
+"""The result of a figure's module: data to draw and claims to print. Nothing here knows how to draw."""
 
-from dataclasses import dataclass, field
+from collections.abc import Iterable
+from dataclasses import dataclass
 from typing import Literal
 
 from ..arrays import FloatArray
@@ -53,7 +54,7 @@ class Panel:
     surface: Surface | None = None
     log_y: bool = False
     x_step: float | None = None
-    """Distance of the ticks, where round numbers are not what one reads: degrees, say."""
+    """Distance of the ticks where round numbers do not suit, as with degrees."""
     x_range: tuple[float, float] | None = None
     y_range: tuple[float, float] | None = None
     equal: bool = False
@@ -81,4 +82,9 @@ class Exhibit:
     caption: str
     panels: tuple[Panel, ...] = ()
     claims: tuple[Claim, ...] = ()
-    facts: tuple[tuple[str, str], ...] = field(default=())
+    facts: tuple[tuple[str, str], ...] = ()
+
+
+def all_claims(exhibits: Iterable[Exhibit]) -> tuple[Claim, ...]:
+    """Return every claim of the exhibits, in their order."""
+    return tuple(claim for exhibit in exhibits for claim in exhibit.claims)

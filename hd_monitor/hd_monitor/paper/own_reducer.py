@@ -1,6 +1,5 @@
-"""The paper's figures for a user's own reducer: the same functions, no claims to hold against."""
+"""The paper's figures for a user's own reducer: the same functions, without claims."""
 
-from collections.abc import Callable, Iterable
 from dataclasses import replace
 
 import numpy as np
@@ -8,12 +7,12 @@ import numpy as np
 from ..model import growth_rate, line_pairs
 from .cases import Case
 from .exhibit import Exhibit
-from .line_figures import REVOLUTIONS, bispectra_panels
-from .phase_figure import phase_panel, strobe_panel
+from .line_figures import bispectra_panels
+from .phase_figure import phase_panels
 from .property_figures import curve_panel, property_curve
-from .records import steady_record
-from .reproduction import compute, select
-from .rig_figures import beat_panel
+from .records import REVOLUTIONS, steady_record
+from .reproduction import Entry
+from .rig_figures import beat_panel, resonance_speed
 from .stability_figure import chart_panel
 from .stiffness_figures import static_measurement, static_panel, stiffness_panels
 from .sweep_figures import sweep_panel, sweep_response
@@ -22,14 +21,12 @@ from .sweep_figures import sweep_panel, sweep_response
 def geometry(case: Case) -> Exhibit:
     """Stiffness over the angle, and the reducer's characteristic numbers."""
     model, reducer = case.model, case.model.reducer
-    pair = reducer.line_frequencies(case.speed)
-    fn = model.dynamics.natural_frequency
-    resonances = [60.0 * fn / (k * reducer.circular_spline_order) for k in (1, 2, 3)]
+    pair, mount = reducer.line_frequencies(case.speed), reducer.mount.value.replace("_", " ")
     travel = [np.rad2deg(reducer.travel_to_separate(k, window="boxcar")) for k in (1, 2, 3)]
     return Exhibit(
         id="F4",
         title="Time-varying torsional stiffness",
-        caption=f"{reducer.flexspline_teeth}/{reducer.circular_spline_teeth} teeth, {_words(reducer.mount.value)}.",
+        caption=f"{reducer.flexspline_teeth}/{reducer.circular_spline_teeth} teeth, {mount}.",
         panels=stiffness_panels(model),
         facts=(
             ("reduction", f"{reducer.reduction:g}"),
@@ -38,19 +35,15 @@ def geometry(case: Case) -> Exhibit:
             (f"first pair at {case.speed:g} rpm", f"{pair.circular_spline:.4f} and {pair.flexspline:.4f} Hz"),
             (f"Δf at {case.speed:g} rpm (eq. 5)", f"{reducer.line_separation(case.speed):.4f} Hz"),
             (
-                "output travel that parts the pairs k = 1, 2, 3",
+                "output travel that separates the pairs k = 1, 2, 3",
                 ", ".join(f"{x:g}°" for x in travel) + " (Hann: twice that)",
             ),
             ("mean stiffness J(2πfn)²", f"{model.dynamics.stiffness:,.0f} N·m/rad"),
-            ("ωo2 meets fn, fn/2, fn/3 at", ", ".join(f"{n:.0f}" for n in resonances) + " rpm"),
+            ("ωo2 meets fn, fn/2, fn/3 at", ", ".join(f"{resonance_speed(case) / k:.0f}" for k in (1, 2, 3)) + " rpm"),
             ("index of the circular spline", f"{model.circular_spline.index:.2%}"),
             ("index of the flexspline", f"{model.flexspline.index:.2%}"),
         ),
     )
-
-
-def _words(name: str) -> str:
-    return name.replace("_", " ")
 
 
 def static(case: Case) -> Exhibit:
@@ -72,7 +65,7 @@ def spectra(case: Case) -> Exhibit:
         id="F8",
         title=f"Bi-spectra at {case.speed:g} rpm",
         caption=f"Displacement, {REVOLUTIONS} output revolutions, Hann window.",
-        panels=bispectra_panels(case, steady_record(case.model, case.speed, REVOLUTIONS)),
+        panels=bispectra_panels(case, steady_record(case.model, case.speed)),
         facts=tuple(
             (f"θ'' of pair k = {k}", f"circular spline {p.circular_spline:.4g}, flexspline {p.flexspline:.4g} rad/s²")
             for k, p in enumerate(pairs, start=1)
@@ -82,23 +75,21 @@ def spectra(case: Case) -> Exhibit:
 
 def sweep(case: Case) -> Exhibit:
     """Envelope of a sweep."""
-    response = sweep_response(case)
     return Exhibit(
         id="F10",
         title="Envelope of a sweep",
         caption=f"ωo2/2π from {case.sweep.start:g} to {case.sweep.stop:g} Hz at {case.sweep.rate:.3g} Hz/s.",
-        panels=(sweep_panel(case, response, "Sweep"),),
+        panels=(sweep_panel(case, sweep_response(case), "Sweep"),),
     )
 
 
 def history(case: Case) -> Exhibit:
     """Time history at the case's speed."""
-    record = steady_record(case.model, case.speed, REVOLUTIONS)
     return Exhibit(
         id="F13",
         title=f"Time history at {case.speed:g} rpm",
         caption=f"Tangential acceleration at {case.sensor_radius:g} m.",
-        panels=(beat_panel(case, record),),
+        panels=(beat_panel(case, steady_record(case.model, case.speed)),),
     )
 
 
@@ -106,7 +97,7 @@ def curve(case: Case) -> Exhibit:
     """Property curve, with the speeds to avoid."""
     measured = property_curve(case)
     speed, rms = measured.highest
-    unstable = measured.speed[measured.growth >= 0.0]
+    unstable = ", ".join(f"{n:g}" for n in measured.speed[measured.growth >= 0.0])
     return Exhibit(
         id="F16",
         title="Property of torsional vibration-speed",
@@ -115,22 +106,18 @@ def curve(case: Case) -> Exhibit:
         facts=(
             ("highest", f"{rms:.3g} g at {speed:g} rpm" if rms > 0.0 else "none: no stable speed"),
             ("peaks", ", ".join(f"{n:g}" for n in measured.peaks) + " rpm"),
-            (
-                "unstable speeds (left out of the curve)",
-                ", ".join(f"{n:g}" for n in unstable) + " rpm" if unstable.size else "none",
-            ),
+            ("unstable speeds (left out of the curve)", f"{unstable} rpm" if unstable else "none"),
         ),
     )
 
 
 def trace(case: Case) -> Exhibit:
     """Phase trace at the case's speed."""
-    record = steady_record(case.model, case.speed, REVOLUTIONS)
     return Exhibit(
         id="F17",
         title=f"Phase trace at {case.speed:g} rpm",
         caption="Displacement and velocity in the steady state.",
-        panels=(phase_panel(record), strobe_panel(case, record)),
+        panels=phase_panels(case, steady_record(case.model, case.speed)),
     )
 
 
@@ -146,25 +133,13 @@ def chart(case: Case) -> Exhibit:
     )
 
 
-FIGURES: tuple[tuple[str, str, Callable[[Case], Exhibit]], ...] = (
-    ("F4", "stiffness and characteristic numbers", geometry),
-    ("F7", "static stiffness", static),
-    ("F8", "bi-spectra", spectra),
-    ("F10", "sweep", sweep),
-    ("F13", "time history", history),
-    ("F16", "property curve", curve),
-    ("F17", "phase trace", trace),
-    ("ST", "stability chart", chart),
+FIGURES = (
+    Entry("F4", "stiffness and characteristic numbers", geometry),
+    Entry("F7", "static stiffness", static),
+    Entry("F8", "bi-spectra", spectra),
+    Entry("F10", "sweep", sweep),
+    Entry("F13", "time history", history),
+    Entry("F16", "property curve", curve),
+    Entry("F17", "phase trace", trace),
+    Entry("ST", "stability chart", chart),
 )
-
-
-def show(
-    case: Case, only: Iterable[str] = (), progress: Callable[[str], None] = lambda line: None
-) -> tuple[Exhibit, ...]:
-    """Compute the figures for one reducer, all or some of them."""
-    chosen = select(only, FIGURES)
-    return compute(((name, about, _bound(function, case)) for name, about, function in chosen), progress)
-
-
-def _bound(function: Callable[[Case], Exhibit], case: Case) -> Callable[[], Exhibit]:
-    return lambda: function(case)

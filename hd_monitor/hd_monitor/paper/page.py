@@ -7,7 +7,7 @@ from pathlib import Path
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from .claim import Outcome
-from .exhibit import Exhibit
+from .exhibit import Exhibit, all_claims
 from .printed import CONTRADICTIONS
 from .table import summary
 
@@ -24,9 +24,9 @@ def page(exhibits: Sequence[Exhibit], pictures: Mapping[str, bytes], *, heading:
         PNG by exhibit.
     heading : str
     command : str
-        The command that makes this page again.
+        The command that produced this page.
     """
-    claims = [claim for exhibit in exhibits for claim in exhibit.claims]
+    claims = all_claims(exhibits)
     environment = Environment(
         loader=PackageLoader("hd_monitor.paper", "."), autoescape=True, undefined=StrictUndefined, trim_blocks=True
     )
@@ -43,7 +43,7 @@ def page(exhibits: Sequence[Exhibit], pictures: Mapping[str, bytes], *, heading:
 
 
 def write_report(exhibits: Sequence[Exhibit], folder: Path, *, heading: str, command: str) -> Path:
-    """Write the figures as PNG and the page into a folder, which is made if it is not there; return the page."""
+    """Write the figures as PNG and the page into a folder, created if missing; return the page's path."""
     from .drawing import png
 
     folder.mkdir(parents=True, exist_ok=True)

@@ -1,13 +1,14 @@
-"""Figure 17: the phase trace, and how one tells that it is quasi-periodic."""
+"""Figure 17: the phase trace, and the test for its being quasi-periodic."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
+from ..arrays import FloatArray
 from .cases import Case, Cases
 from .claim import Claim
-from .exhibit import Curve, Exhibit, Panel
-from .line_figures import REVOLUTIONS
+from .exhibit import Curve, Exhibit, Panel, Style
 from .records import SteadyRecord, steady_record
 
 
@@ -31,15 +32,21 @@ class Quasiperiodicity:
     lattice_power: float
 
 
+def _strobe(case: Case, record: SteadyRecord, rows: Iterable[FloatArray]) -> FloatArray:
+    """Catch the rows once per circular-spline period, over one output revolution."""
+    cs = case.model.reducer.output_orders.circular_spline
+    times = np.arange(0.0, cs) / (cs * record.output_frequency)
+    return np.stack([np.interp(times, record.response.times, row) for row in rows])
+
+
 def quasiperiodicity(case: Case, record: SteadyRecord) -> Quasiperiodicity:
     """Measure a record over at least two output revolutions."""
     response, omega = record.response, case.model.dynamics.angular_frequency
     states = np.stack([response.displacement, response.velocity / omega])
     size = float(np.sqrt(states.var(axis=1).sum()))
-    cs = case.model.reducer.output_orders.circular_spline
-    strobe = np.arange(0.0, cs) / (cs * record.output_frequency)
-    caught = np.stack([np.interp(strobe, response.times, row) for row in states])
-    common = round(case.model.reducer.output_orders.flexspline - cs)  # times per output revolution
+    caught = _strobe(case, record, states)
+    cs, fs = case.model.reducer.output_orders
+    common = round(fs - cs)  # times per output revolution
     period = response.times.size // (record.revolutions * common)
     back = states[:, period : 2 * period] - states[:, :period]
     power = np.abs(np.fft.rfft(response.acceleration)) ** 2
@@ -50,52 +57,40 @@ def quasiperiodicity(case: Case, record: SteadyRecord) -> Quasiperiodicity:
     )
 
 
-def phase_panel(record: SteadyRecord) -> Panel:
-    """Draw the phase trace as figure 17 does, over half an output revolution: the common period of both lines."""
-    response = record.response
-    one = slice(0, response.times.size // record.revolutions // 2)
-    return Panel(
-        title="Phase trace, half an output revolution",
-        x_label="displacement θ (mrad)",
-        y_label="velocity θ' (rad/s)",
-        curves=(Curve(x=response.displacement[one] * 1e3, y=response.velocity[one], style="fine"),),
-        equal=True,
+def phase_panels(case: Case, record: SteadyRecord) -> tuple[Panel, ...]:
+    """Draw the phase trace as figure 17 does, and the states caught once per circular-spline period.
+
+    The trace covers half an output revolution, the common period of both lines. The states caught make a closed curve
+    if the motion is quasi-periodic, else one point.
+    """
+    states = record.response.displacement, record.response.velocity
+    half = record.response.times.size // record.revolutions // 2
+    caught = _strobe(case, record, states)
+    return (
+        _phase_panel("Phase trace, half an output revolution", states[0][:half], states[1][:half], "fine"),
+        _phase_panel("Caught once per circular-spline period", caught[0], caught[1], "points"),
     )
 
 
-def strobe_panel(case: Case, record: SteadyRecord) -> Panel:
-    """Draw the states caught once per circular-spline period: a closed curve if quasi-periodic, else one point."""
-    response = record.response
-    cs = case.model.reducer.output_orders.circular_spline
-    strobe = np.arange(0.0, cs) / (cs * record.output_frequency)
+def _phase_panel(title: str, displacement: FloatArray, velocity: FloatArray, style: Style) -> Panel:
+    curve = Curve(x=displacement * 1e3, y=velocity, style=style)
     return Panel(
-        title="Caught once per circular-spline period",
-        x_label="displacement θ (mrad)",
-        y_label="velocity θ' (rad/s)",
-        curves=(
-            Curve(
-                x=np.interp(strobe, response.times, response.displacement) * 1e3,
-                y=np.interp(strobe, response.times, response.velocity),
-                style="points",
-            ),
-        ),
-        equal=True,
+        title=title, x_label="displacement θ (mrad)", y_label="velocity θ' (rad/s)", curves=(curve,), equal=True
     )
 
 
 def figure_17(cases: Cases) -> Exhibit:
     """Phase trace at 850 rpm."""
     case = cases["rig"]
-    record = steady_record(case.model, case.speed, REVOLUTIONS)
+    record = steady_record(case.model, case.speed)
     measured = quasiperiodicity(case, record)
     return Exhibit(
         id="F17",
         title=f"Phase trace at {case.speed:g} rpm",
         caption="Simulated displacement and velocity in the steady state.",
-        panels=(phase_panel(record), strobe_panel(case, record)),
+        panels=phase_panels(case, record),
         claims=(
             Claim(
-                id="F17",
                 statement="The trace is quasi-periodic",
                 paper="of quasi periodicity",
                 ours="not of one period (states caught once per period spread over "

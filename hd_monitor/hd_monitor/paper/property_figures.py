@@ -9,9 +9,8 @@ from ..model import growth_rate, steady_state
 from .cases import Case, Cases
 from .claim import Claim
 from .exhibit import Curve, Exhibit, Panel
-from .line_figures import REVOLUTIONS
-from .records import steady_record
-from .rig_figures import resonance_marks
+from .records import local_maxima, steady_record
+from .rig_figures import resonance_marks, resonance_speed
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -35,9 +34,7 @@ class PropertyCurve:
     @property
     def peaks(self) -> FloatArray:
         """Speeds [rpm] of local maxima."""
-        r = np.nan_to_num(self.rms, nan=np.inf)
-        inner = np.flatnonzero((r[1:-1] > r[:-2]) & (r[1:-1] >= r[2:])) + 1
-        return np.asarray(self.speed[inner])
+        return self.speed[local_maxima(np.nan_to_num(self.rms, nan=np.inf))]
 
     @property
     def highest(self) -> tuple[float, float]:
@@ -47,9 +44,13 @@ class PropertyCurve:
         best = int(np.nanargmax(self.rms))
         return float(self.speed[best]), float(self.rms[best])
 
+    def at(self, speed: float) -> float:
+        """RMS [g] at the computed speed nearest to `speed` [rpm]."""
+        return float(self.rms[np.abs(self.speed - speed).argmin()])
+
 
 def property_curve(case: Case, speeds: FloatArray | None = None) -> PropertyCurve:
-    """Steady RMS at each speed by harmonic balance; no time integration."""
+    """Compute the steady RMS at each speed [rpm], by default the case's, by harmonic balance."""
     speeds = case.speeds.values if speeds is None else speeds
     growth = np.array([growth_rate(case.model, float(n)) for n in speeds])
     rms = np.array([case.in_g(steady_state(case.model, float(n)).acceleration_rms) for n in speeds])
@@ -76,9 +77,10 @@ def figure_16(cases: Cases) -> Exhibit:
     model = case.model
     curve = property_curve(case)
     step = case.speeds.step
-    resonance = 60.0 * model.dynamics.natural_frequency / model.reducer.circular_spline_order
+    resonance = resonance_speed(case)
     wanted = {"1/2 harmonic resonance": resonance / 2.0, "resonance": resonance}
     nearest = {name: float(curve.peaks[np.abs(curve.peaks - n).argmin()]) for name, n in wanted.items()}
+    at_half, at_resonance = (curve.at(speed) for speed in nearest.values())
     fine = np.arange(1.5 * resonance, 2.5 * resonance, step / 10.0)
     growth = [growth_rate(model, float(n)) for n in fine]
     least_stable = float(fine[int(np.argmax(growth))])
@@ -86,9 +88,9 @@ def figure_16(cases: Cases) -> Exhibit:
     checks = sorted({float(curve.speed[0]), curve.highest[0], float(curve.speed[-1])})
     errors = []
     for n in checks:
-        record = steady_record(model, n, REVOLUTIONS)
+        record = steady_record(model, n)
         integrated = float(case.in_g(np.sqrt(np.mean(record.response.acceleration**2))))
-        errors.append(abs(integrated / float(curve.rms[curve.speed == n][0]) - 1.0))
+        errors.append(abs(integrated / curve.at(n) - 1.0))
     return Exhibit(
         id="F16",
         title="Property of torsional vibration-speed",
@@ -98,7 +100,6 @@ def figure_16(cases: Cases) -> Exhibit:
         claims=(
             *(
                 Claim(
-                    id="F16",
                     statement=f"Convex peak of the {name}",
                     paper="one of three peaks",
                     ours=f"{nearest[name]:g} rpm (ωo2 = {'fn/2' if n < resonance else 'fn'} at {n:g} rpm)",
@@ -107,7 +108,6 @@ def figure_16(cases: Cases) -> Exhibit:
                 for name, n in wanted.items()
             ),
             Claim(
-                id="F16",
                 statement="Convex peak of the instability within 200 to 3000 rpm",
                 paper="one of three peaks",
                 ours=f"least stable near {least_stable:.0f} rpm (ωo1 ≈ 2fn), growth rate {max(growth):.1f} 1/s there",
@@ -117,13 +117,11 @@ def figure_16(cases: Cases) -> Exhibit:
                 "and fn/2.",
             ),
             Claim(
-                id="F16",
                 statement="The outline is consistent with the simulated envelope: same peaks, resonance above "
                 "1/2 resonance",
                 paper="consistent with figure 10b or 11b",
-                ours=f"{_at(curve, nearest['resonance']):.2f} g above "
-                f"{_at(curve, nearest['1/2 harmonic resonance']):.2f} g",
-                passed=_at(curve, nearest["resonance"]) > _at(curve, nearest["1/2 harmonic resonance"]),
+                ours=f"{at_resonance:.2f} g above {at_half:.2f} g",
+                passed=at_resonance > at_half,
             ),
         ),
         facts=(
@@ -134,7 +132,3 @@ def figure_16(cases: Cases) -> Exhibit:
             *((f"{n:g} rpm", f"{r:.4g} g") for n, r in zip(curve.speed, curve.rms, strict=True)),
         ),
     )
-
-
-def _at(curve: PropertyCurve, speed: float) -> float:
-    return float(curve.rms[np.abs(curve.speed - speed).argmin()])

@@ -4,15 +4,17 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from scipy.signal import periodogram
 
-from ..arrays import FloatArray
+from ..arrays import FloatArray, IntArray
 from ..model import ParametricModel
 from ..model.simulation import TimeResponse, constant_speed, simulate
 
+REVOLUTIONS = 4
+"""Of the output, in every record: the lines of pair k = 1 are then 8 bins apart."""
+
 SETTLING_TIME_CONSTANTS = 20.0
-"""Of 1/(ζωn), left out at the start: what is left of the transient is then 2e-9 of it."""
+"""Of 1/(ζωn), left out at the start: the transient has then decayed to 2e-9."""
 
 _STEPS_PER_RADIAN = 6.0  # of the natural frequency: 2 kHz at 55 Hz, where the integration is good to 1e-5
 _SAMPLES_PER_CYCLE = 12.0  # of the fastest stiffness harmonic
@@ -33,15 +35,10 @@ class SteadyRecord(NamedTuple):
     output_frequency: float
     """Output revolutions per second [Hz]."""
 
-    def phasor(self, values: npt.ArrayLike, order: float) -> complex:
-        """Complex amplitude of `values` at a whole number of cycles per output revolution (exact: it is a bin)."""
-        samples = np.asarray(values, dtype=np.float64)
-        cycles = np.arange(samples.size) * (order * self.revolutions / samples.size)
-        return complex(2.0 / samples.size * (samples * np.exp(-2j * np.pi * cycles)).sum())
-
-    def amplitude(self, values: npt.ArrayLike, order: float) -> float:
-        """Peak amplitude of `values` at a whole number of cycles per output revolution."""
-        return abs(self.phasor(values, order))
+    def amplitude(self, values: FloatArray, order: float) -> float:
+        """Peak amplitude of `values` at a whole number of cycles per output revolution (exact: it is a bin)."""
+        cycles = np.arange(values.size) * (order * self.revolutions / values.size)
+        return float(abs(2.0 / values.size * (values * np.exp(-2j * np.pi * cycles)).sum()))
 
 
 def sampling_rate(model: ParametricModel, speed_rpm: float) -> float:
@@ -51,7 +48,7 @@ def sampling_rate(model: ParametricModel, speed_rpm: float) -> float:
     return max(_STEPS_PER_RADIAN * model.dynamics.angular_frequency, _SAMPLES_PER_CYCLE * fastest)
 
 
-def steady_record(model: ParametricModel, speed_rpm: float, revolutions: int) -> SteadyRecord:
+def steady_record(model: ParametricModel, speed_rpm: float, revolutions: int = REVOLUTIONS) -> SteadyRecord:
     """Simulate a constant speed [rpm] and keep `revolutions` of the output after the transient."""
     revolution = 60.0 * model.reducer.reduction / speed_rpm
     duration = revolutions * revolution
@@ -64,16 +61,12 @@ def steady_record(model: ParametricModel, speed_rpm: float, revolutions: int) ->
     return SteadyRecord(whole.after(settled), revolutions, 1.0 / revolution)
 
 
-def spectrum(values: npt.ArrayLike, rate: float) -> Spectrum:
-    """Amplitude spectrum with a Hann window: a sine of amplitude A on a bin shows A; the mean is taken off."""
-    frequencies, power = periodogram(
-        np.asarray(values, dtype=np.float64), rate, window="hann", detrend="constant", scaling="spectrum"
-    )
+def spectrum(values: FloatArray, rate: float) -> Spectrum:
+    """Amplitude spectrum with a Hann window, the mean removed: a sine of amplitude A on a bin shows A."""
+    frequencies, power = periodogram(values, rate, window="hann", detrend="constant", scaling="spectrum")
     return Spectrum(np.asarray(frequencies), np.sqrt(2.0 * power))
 
 
-def peaks(whole: Spectrum, threshold: float) -> FloatArray:
-    """Frequencies [Hz] of local maxima above `threshold`."""
-    a = whole.amplitude
-    inner = np.flatnonzero((a[1:-1] > a[:-2]) & (a[1:-1] >= a[2:]) & (a[1:-1] > threshold)) + 1
-    return whole.frequencies[inner]
+def local_maxima(values: FloatArray) -> IntArray:
+    """Indexes of values above the one before and not below the next; ends do not count."""
+    return np.flatnonzero((values[1:-1] > values[:-2]) & (values[1:-1] >= values[2:])) + 1

@@ -18,19 +18,19 @@ from . import (
     table_1,
 )
 from .cases import Cases
-from .claim import Claim, Outcome
+from .claim import Outcome
 from .exhibit import Exhibit
 
 
-class Entry(NamedTuple):
-    """A figure, table or equation: its name, a few words, and the function that computes it."""
+class Entry[Given](NamedTuple):
+    """A figure, table or equation: its name, a few words, and the function that computes it from what is given."""
 
     id: str
     about: str
-    compute: Callable[[Cases], Exhibit]
+    compute: Callable[[Given], Exhibit]
 
 
-EXHIBITS = (
+EXHIBITS: tuple[Entry[Cases], ...] = (
     Entry("F4", "stiffness over the wave-generator angle", stiffness_figures.figure_4),
     Entry("F7", "static stiffness every 30°", stiffness_figures.figure_7),
     Entry("T1", "Table 1 recovered from vibration", table_1.table_1),
@@ -57,7 +57,7 @@ EXHIBITS = (
 )
 
 
-def select[EntryLike: tuple[object, ...]](names: Iterable[str], entries: Sequence[EntryLike]) -> tuple[EntryLike, ...]:
+def select[Given](names: Iterable[str], entries: Sequence[Entry[Given]]) -> tuple[Entry[Given], ...]:
     """Choose entries by name, whatever the case; ``F10`` means ``F10a`` and ``F10b``. No names choose all.
 
     Raises
@@ -66,56 +66,44 @@ def select[EntryLike: tuple[object, ...]](names: Iterable[str], entries: Sequenc
         If a name matches none; the message lists them all.
     """
     wanted = [name.strip().casefold() for given in names for name in given.split(",") if name.strip()]
-    if not wanted:
-        return tuple(entries)
-    keys = [str(entry[0]).casefold() for entry in entries]
     for name in wanted:
-        if not any(_matches(key, name) for key in keys):
-            raise ParameterError(
-                f"there is no figure {name!r}; choose from {', '.join(str(entry[0]) for entry in entries)}"
-            )
-    return tuple(entry for entry, key in zip(entries, keys, strict=True) if any(_matches(key, name) for name in wanted))
+        if not any(_matches(entry.id, name) for entry in entries):
+            raise ParameterError(f"there is no figure {name!r}; choose from {', '.join(entry.id for entry in entries)}")
+    return tuple(entry for entry in entries if not wanted or any(_matches(entry.id, name) for name in wanted))
 
 
 def _matches(key: str, name: str) -> bool:
+    key = key.casefold()
     return key == name or (key[:-1] == name and key[-1:].isalpha() and name[-1:].isdigit())
 
 
-def compute(
-    entries: Iterable[tuple[str, str, Callable[[], Exhibit]]], progress: Callable[[str], None] = lambda line: None
+def compute[Given](
+    entries: Sequence[Entry[Given]],
+    given: Given,
+    only: Iterable[str] = (),
+    progress: Callable[[str], None] = lambda line: None,
 ) -> tuple[Exhibit, ...]:
-    """Compute one exhibit after another and say so.
+    """Compute one exhibit after another.
 
     Parameters
     ----------
-    entries : iterable of (id, a few words, function)
+    entries : sequence of Entry
+        `EXHIBITS` for the paper's, `own_reducer.FIGURES` for a reducer of one's own.
+    given : Cases or Case
+        What they are computed from.
+    only : iterable of str
+        Names to choose from them, see :func:`select`.
     progress : callable
         Gets one line per exhibit when it is done.
     """
-    listed = list(entries)
+    chosen = select(only, entries)
     done = []
-    for number, (name, about, function) in enumerate(listed, start=1):
+    for number, entry in enumerate(chosen, start=1):
         start = time.perf_counter()
-        exhibit = function()
+        exhibit = entry.compute(given)
         done.append(exhibit)
         failed = sum(claim.outcome is Outcome.FAIL for claim in exhibit.claims)
         state = f"{failed} of {len(exhibit.claims)} claims FAIL" if failed else "ok"
-        progress(f"[{number:2d}/{len(listed)}] {name:5s} {about}: {state}, {time.perf_counter() - start:.1f} s")
+        seconds = time.perf_counter() - start
+        progress(f"[{number:2d}/{len(chosen)}] {entry.id:5s} {entry.about}: {state}, {seconds:.1f} s")
     return tuple(done)
-
-
-def reproduce(
-    cases: Cases, only: Iterable[str] = (), progress: Callable[[str], None] = lambda line: None
-) -> tuple[Exhibit, ...]:
-    """Compute the paper's exhibits, all or some of them."""
-    chosen = select(only, EXHIBITS)
-    return compute(((entry.id, entry.about, _bound(entry, cases)) for entry in chosen), progress)
-
-
-def _bound(entry: Entry, cases: Cases) -> Callable[[], Exhibit]:
-    return lambda: entry.compute(cases)
-
-
-def all_claims(exhibits: Iterable[Exhibit]) -> tuple[Claim, ...]:
-    """Every claim of the exhibits, in their order."""
-    return tuple(claim for exhibit in exhibits for claim in exhibit.claims)

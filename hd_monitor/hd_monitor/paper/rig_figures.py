@@ -1,4 +1,4 @@
-"""Figures 13 and 15: what the test rig's sensor shows at one speed."""
+"""Figures 13 and 15: the test rig's sensor signal at one speed."""
 
 from dataclasses import dataclass
 
@@ -13,10 +13,11 @@ from .cases import Case, Cases
 from .claim import Claim
 from .diagnosis import diagnose, verdict_words
 from .exhibit import Curve, Exhibit, Mark, Panel
-from .line_figures import REVOLUTIONS, spectrum_panel, zoom_panel
-from .records import SteadyRecord, spectrum, steady_record
+from .line_figures import spectrum_panel, zoom_panel
+from .records import REVOLUTIONS, SteadyRecord, spectrum, steady_record
 
 _PAIRS = 4
+_SHOWN = 4.0  # s of the time history
 
 
 def strongest_pair(case: Case, speed: float) -> int:
@@ -47,21 +48,19 @@ def beat(values: FloatArray, rate: float) -> Beat:
     )
 
 
-def beat_panel(case: Case, record: SteadyRecord, shown: float = 4.0) -> Panel:
+def beat_panel(case: Case, record: SteadyRecord) -> Panel:
     """Draw the time history as figure 13a does."""
     values = case.in_g(record.response.acceleration)
     measured = beat(values, record.response.rate)
-    part = record.response.times <= shown
-    times = record.response.times[part]
+    part = record.response.times <= _SHOWN
+    times, label = record.response.times[part], f"envelope, beat {measured.frequency:.3f} Hz"
     return Panel(
         title="Time history",
         x_label="time (s)",
         y_label="tangential acceleration (g)",
         curves=(
             Curve(x=times, y=values[part]),
-            Curve(
-                x=times, y=measured.envelope[part], label=f"envelope, beat {measured.frequency:.3f} Hz", style="dashed"
-            ),
+            Curve(x=times, y=measured.envelope[part], label=label, style="dashed"),
         ),
     )
 
@@ -69,7 +68,7 @@ def beat_panel(case: Case, record: SteadyRecord, shown: float = 4.0) -> Panel:
 def figure_13a(cases: Cases) -> Exhibit:
     """Time history on the rig at 850 rpm: the beat."""
     case = cases["rig"]
-    record = steady_record(case.model, case.speed, REVOLUTIONS)
+    record = steady_record(case.model, case.speed)
     k = strongest_pair(case, case.speed)
     separation = case.model.reducer.line_separation(case.speed, k)
     measured = beat(record.response.acceleration, record.response.rate)
@@ -80,7 +79,6 @@ def figure_13a(cases: Cases) -> Exhibit:
         panels=(beat_panel(case, record),),
         claims=(
             Claim(
-                id="F13a",
                 statement="A beat appears, caused by the small frequency difference of the bi-spectra",
                 paper="obvious beat (no number)",
                 ours=f"envelope at {measured.frequency:.4f} Hz (Δf of pair {k}: {separation:.4f} Hz), depth "
@@ -92,96 +90,84 @@ def figure_13a(cases: Cases) -> Exhibit:
     )
 
 
-def resonance_claim(figure: str, case: Case, speed: float, label: printed.Printed, multiple: int) -> Claim:
-    """The paper's label of the dominant component counts shaft cycles; ours is a pair's k."""
-    record = steady_record(case.model, speed, REVOLUTIONS)
+def resonance_claim(case: Case, record: SteadyRecord, speed: float, label: printed.Printed, multiple: int) -> Claim:
+    """Find the dominant pair's k, where the paper's label of the dominant component counts shaft cycles."""
     whole = spectrum(record.response.acceleration, record.response.rate)
     dominant = float(whole.frequencies[whole.amplitude.argmax()])
     k = strongest_pair(case, speed)
     pair = case.model.reducer.line_frequencies(speed, k)
+    fn = case.model.dynamics.natural_frequency
     of_shaft = multiple * speed / 60.0
-    as_defined = multiple * 2.0 * speed / 60.0
     return Claim(
-        id=figure,
         statement=f"Dominant component at {speed:g} rpm, close to the resonance",
         paper=str(label),
         ours=f"k = {k}: {pair.circular_spline:.2f} and {pair.flexspline:.2f} Hz, the larger at {dominant:.2f} Hz",
         passed=min(abs(dominant - line) for line in pair) < record.output_frequency
         and abs(pair.circular_spline - of_shaft) < 1e-6
-        and abs(pair.circular_spline - case.model.dynamics.natural_frequency)
-        < 0.1 * case.model.dynamics.natural_frequency,
+        and abs(pair.circular_spline - fn) < 0.1 * fn,
         contradiction=True,
-        note=f"With ωo2 = 2n/60 the printed {multiple}× would be {as_defined:.0f} Hz; {multiple} cycles a shaft "
+        note=f"With ωo2 = 2n/60 the printed {multiple}× would be {2.0 * of_shaft:.0f} Hz; {multiple} cycles a shaft "
         f"revolution are {of_shaft:.2f} Hz, this pair. Numbered here by k.",
     )
 
 
-def rig_spectrum_panel(case: Case, record: SteadyRecord, top: float) -> Panel:
-    """Draw the spectrum of what the sensor shows."""
-    return spectrum_panel(case.in_g(record.response.acceleration), record.response.rate, unit="g", top=top)
+def _spectrum(figure: str, title: str, case: Case, record: SteadyRecord, top: float, *claims: Claim) -> Exhibit:
+    """Show the spectrum of the sensor's signal up to `top` [Hz]."""
+    values = case.in_g(record.response.acceleration)
+    return Exhibit(
+        id=figure,
+        title=title,
+        caption=f"Tangential acceleration at {case.sensor_radius:g} m, {REVOLUTIONS} output revolutions, Hann window.",
+        panels=(spectrum_panel(values, record.response.rate, unit="g", top=top),),
+        claims=claims,
+    )
 
 
 def figure_13b(cases: Cases) -> Exhibit:
     """Spectrum on the rig at 850 rpm."""
     case = cases["rig"]
-    record = steady_record(case.model, case.speed, REVOLUTIONS)
+    record = steady_record(case.model, case.speed)
     top = 1.2 * case.model.reducer.line_frequencies(case.speed, _PAIRS).flexspline
     pairs = line_pairs(case.model, case.speed, _PAIRS)
     floor = 1e-3 * max(max(pair) for pair in pairs)
     visible = [k for k, pair in enumerate(pairs, start=1) if min(pair) > floor]
-    return Exhibit(
-        id="F13b",
-        title=f"Spectrum of torsional vibration at {case.speed:g} rpm",
-        caption=f"Tangential acceleration at {case.sensor_radius:g} m, {REVOLUTIONS} output revolutions, Hann window.",
-        panels=(rig_spectrum_panel(case, record, top),),
-        claims=(
-            Claim(
-                id="F13b",
-                statement="Several bi-spectra distribute in the vibration spectrum",
-                paper="several",
-                ours="pairs k = " + ", ".join(str(k) for k in visible) + " above 1e-3 of the largest line",
-                passed=len(visible) >= 2,
-            ),
-            resonance_claim("F13b", case, case.speed, printed.RIG_DOMINANT, 4),
-        ),
+    several = Claim(
+        statement="Several bi-spectra distribute in the vibration spectrum",
+        paper="several",
+        ours="pairs k = " + ", ".join(str(k) for k in visible) + " above 1e-3 of the largest line",
+        passed=len(visible) >= 2,
     )
+    dominant = resonance_claim(case, record, case.speed, printed.RIG_DOMINANT, 4)
+    title = f"Spectrum of torsional vibration at {case.speed:g} rpm"
+    return _spectrum("F13b", title, case, record, top, several, dominant)
 
 
 def figure_13c(cases: Cases) -> Exhibit:
     """Zoom spectrum on the rig at 850 rpm: which peak is higher."""
     case = cases["rig"]
     model = case.model
-    record = steady_record(model, case.speed, REVOLUTIONS)
+    record = steady_record(model, case.speed)
     values = case.in_g(record.response.acceleration)
     k = strongest_pair(case, case.speed)
-    orders = model.reducer.output_orders
-    heights = LinePair(
-        record.amplitude(values, k * orders.circular_spline), record.amplitude(values, k * orders.flexspline)
-    )
-    lines = model.reducer.line_frequencies(case.speed, k)
-    gain = [abs(model.dynamics.receptance(f)) * f**2 for f in lines]
-    diagnosis = diagnose(case, case.speed)
+    heights = LinePair(*(record.amplitude(values, k * order) for order in model.reducer.output_orders))
+    left, right = (abs(model.dynamics.receptance(f)) * f**2 for f in model.reducer.line_frequencies(case.speed, k))
+    diagnosis = diagnose(case)
     return Exhibit(
         id="F13c",
         title=f"Zoom spectrum at {case.speed:g} rpm",
         caption=f"Around pair k = {k} and, beside it, k = 1; tangential acceleration, Hann window.",
-        panels=tuple(
-            zoom_panel(model, record, values, speed_rpm=case.speed, k=number, unit="g")
-            for number in sorted({k, 1}, reverse=True)
-        ),
+        panels=tuple(zoom_panel(case, record, values, k=number, unit="g") for number in sorted({k, 1}, reverse=True)),
         claims=(
             Claim(
-                id="F13c",
                 statement="The right peak is higher than the left one: the flexspline is the dominant source",
                 paper="right higher",
                 ours=f"right {heights.flexspline:.3g} g, left {heights.circular_spline:.3g} g (k = {k})",
                 passed=heights.flexspline > heights.circular_spline
                 and model.flexspline.index > model.circular_spline.index,
                 note=f"Near the resonance the slope matters too: equal defects would show right/left = "
-                f"{gain[1] / gain[0]:.2f} here.",
+                f"{right / left:.2f} here.",
             ),
             Claim(
-                id="F13c",
                 statement="The monitor's verdict on this vibration",
                 paper="flexspline",
                 ours=verdict_words(diagnosis),
@@ -195,23 +181,22 @@ def figure_13c(cases: Cases) -> Exhibit:
 
 def figure_15(cases: Cases) -> Exhibit:
     """Spectrum on the rig at 1700 rpm: resonance of the first pair."""
-    case = cases["rig"]
-    speed = printed.RIG_FAST_SPEED.value
-    record = steady_record(case.model, speed, REVOLUTIONS)
+    case, speed = cases["rig"], printed.RIG_FAST_SPEED.value
+    record = steady_record(case.model, speed)
     top = 1.2 * case.model.reducer.line_frequencies(speed, 3).flexspline
-    return Exhibit(
-        id="F15",
-        title=f"Spectrum of combination harmonic resonance at {speed:g} rpm",
-        caption=f"Tangential acceleration at {case.sensor_radius:g} m, {REVOLUTIONS} output revolutions, Hann window.",
-        panels=(rig_spectrum_panel(case, record, top),),
-        claims=(resonance_claim("F15", case, speed, printed.RIG_FAST_DOMINANT, 2),),
-    )
+    claim = resonance_claim(case, record, speed, printed.RIG_FAST_DOMINANT, 2)
+    title = f"Spectrum of combination harmonic resonance at {speed:g} rpm"
+    return _spectrum("F15", title, case, record, top, claim)
+
+
+def resonance_speed(case: Case) -> float:
+    """Wave-generator speed [rpm] at which ωo2 meets fn."""
+    return 60.0 * case.model.dynamics.natural_frequency / case.model.reducer.circular_spline_order
 
 
 def resonance_marks(case: Case) -> tuple[Mark, ...]:
     """Mark the speeds at which ωo2 meets fn/k, and 2fn."""
-    fn, order = case.model.dynamics.natural_frequency, case.model.reducer.circular_spline_order
     return tuple(
-        Mark(at=60.0 * fn * times / order, label=label)
+        Mark(at=resonance_speed(case) * times, label=label)
         for times, label in ((1 / 3, "fn/3"), (0.5, "fn/2"), (1.0, "fn"), (2.0, "2 fn"))
     )

@@ -1,11 +1,10 @@
-"""The stability chart over speed and size of a defect: what Strutt's diagram is for one frequency."""
+"""The stability chart over speed and size of a defect, as Strutt's diagram shows it for one frequency."""
 
 from dataclasses import replace
 
 import numpy as np
 
-from ..model import growth_rate, scale_defects, stability_chart
-from ..model.parameters import ParametricModel, StiffnessSeries
+from ..model import ParametricModel, StiffnessSeries, growth_rate, scale_defects, stability_chart
 from .cases import Case, Cases
 from .claim import Claim
 from .exhibit import Exhibit, Mark, Panel, Surface
@@ -71,7 +70,6 @@ def stability(cases: Cases) -> Exhibit:
         panels=(chart_panel(case),),
         claims=(
             Claim(
-                id="ST",
                 statement="Threshold of the principal instability for one β, ζ = " + ", ".join(f"{z:g}" for z in zetas),
                 paper="4ζ = "
                 + ", ".join(f"{4 * z:.3f}" for z in zetas)
@@ -80,7 +78,6 @@ def stability(cases: Cases) -> Exhibit:
                 passed=all(abs(t / (4.0 * z) - 1.0) < 0.01 for t, z in zip(thresholds, zetas, strict=True)),
             ),
             Claim(
-                id="ST",
                 statement="Table 1 has a steady state at 25 Hz",
                 paper="steady-state vibration is simulated",
                 ours=f"growth rate {rate:.2f} 1/s",

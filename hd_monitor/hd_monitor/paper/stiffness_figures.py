@@ -1,4 +1,4 @@
-"""Figures 4 and 7: stiffness over the wave-generator angle, and as a static test bed measures it."""
+"""Figures 4 and 7: stiffness over the wave-generator angle, computed and measured on a static test bed."""
 
 from dataclasses import dataclass, replace
 
@@ -70,37 +70,30 @@ def static_measurement(case: Case) -> StaticMeasurement:
     positions = round(2.0 * np.pi / case.static_step)
     angle = np.asarray(case.static_step * np.arange(positions + 1), dtype=np.float64)
     stiffness = case.static_test.measure(case.model, angle)
-    harmonics = min(3, (positions // 2 - 1) // 2)
-    return StaticMeasurement(
-        angle=angle, stiffness=stiffness, fit=fit_stiffness(angle, stiffness, harmonics=max(harmonics, 1))
-    )
+    harmonics = max(1, min(3, (positions // 2 - 1) // 2))
+    return StaticMeasurement(angle=angle, stiffness=stiffness, fit=fit_stiffness(angle, stiffness, harmonics=harmonics))
 
 
 def static_panel(case: Case, measured: StaticMeasurement, title: str) -> Panel:
     """Draw readings and fit as figures 7 and 20 do."""
     smooth = np.linspace(0.0, float(measured.angle[-1]), 721)
+    degrees, mean, read = np.rad2deg(smooth), measured.fit.mean, f"measured every {np.rad2deg(case.static_step):g}°"
     return Panel(
         title=title,
         x_label=ANGLE_LABEL,
         y_label=STIFFNESS_LABEL,
         x_step=60.0,
         curves=(
-            Curve(
-                x=np.rad2deg(measured.angle), y=measured.stiffness, label="measured every "
-                f"{np.rad2deg(case.static_step):g}°", style="dotted points",
-            ),
-            Curve(x=np.rad2deg(smooth), y=measured.fit(smooth), label=f"fit, β = {measured.fit.index:.1%}"),
-            Curve(
-                x=np.rad2deg(smooth[[0, -1]]), y=np.full(2, measured.fit.mean),
-                label=f"Kav = {measured.fit.mean:,.0f} N·m/rad", style="dashed",
-            ),
+            Curve(x=np.rad2deg(measured.angle), y=measured.stiffness, label=read, style="dotted points"),
+            Curve(x=degrees, y=measured.fit(smooth), label=f"fit, β = {measured.fit.index:.1%}"),
+            Curve(x=degrees[[0, -1]], y=np.full(2, mean), label=f"Kav = {mean:,.0f} N·m/rad", style="dashed"),
         ),
-    )  # fmt: skip
+    )
 
 
-def stiffness_panels(model: ParametricModel, revolutions: float = 2.0) -> tuple[Panel, ...]:
+def stiffness_panels(model: ParametricModel) -> tuple[Panel, ...]:
     """Draw figure 4: each spline's stiffness, then both over as many revolutions as they take to come back."""
-    near = stiffness_curves(model, revolutions)
+    near = stiffness_curves(model, 2.0)
     far = stiffness_curves(model, model.reducer.reduction)
     degrees = np.rad2deg(near.angle)
     return (
@@ -128,30 +121,26 @@ def figure_4(cases: Cases) -> Exhibit:
     case = cases["stiffness_sketch"]
     reducer = case.model.reducer
     long = stiffness_curves(case.model, reducer.reduction)
-    measured = {
-        "circular spline": cycles_per_revolution(long.angle, long.circular_spline),
-        "flexspline": cycles_per_revolution(long.angle, long.flexspline),
-    }
-    claims = [
-        Claim(
-            id="F4",
-            statement=f"Stiffness fluctuation of a {name} defect, cycles per wave-generator revolution",
-            paper=str(value),
-            ours=f"{measured[name]:.5f} (period {360.0 / measured[name]:.3f}°)",
-            passed=abs(measured[name] - value.value) < 1e-4,
-        )
-        for name, value in (
-            ("circular spline", printed.CIRCULAR_SPLINE_CYCLES),
-            ("flexspline", printed.FLEXSPLINE_CYCLES),
-        )
-    ]
+    splines = (
+        ("circular spline", long.circular_spline, printed.CIRCULAR_SPLINE_CYCLES),
+        ("flexspline", long.flexspline, printed.FLEXSPLINE_CYCLES),
+    )
     return Exhibit(
         id="F4",
         title="Periodic time-varying torsional stiffness",
         caption=f"z1 = {reducer.flexspline_teeth}, z2 = {reducer.circular_spline_teeth}, first harmonic of each "
         "spline.",
         panels=stiffness_panels(case.model),
-        claims=tuple(claims),
+        claims=tuple(
+            Claim(
+                statement=f"Stiffness fluctuation of a {name} defect, cycles per wave-generator revolution",
+                paper=str(value),
+                ours=f"{cycles:.5f} (period {360.0 / cycles:.3f}°)",
+                passed=abs(cycles - value.value) < 1e-4,
+            )
+            for name, stiffness, value in splines
+            for cycles in (cycles_per_revolution(long.angle, stiffness),)
+        ),
     )
 
 
@@ -170,7 +159,6 @@ def figure_7(cases: Cases) -> Exhibit:
         panels=(static_panel(case, measured, f"Static stiffness at {case.static_test.torque:g} N·m"),),
         claims=(
             Claim(
-                id="F7",
                 statement="Index of stiffness fluctuation β = Δ/Kav from readings every 30° at 40 N·m",
                 paper=str(printed.STATIC_INDEX),
                 ours=f"{measured.fit.index:.2%}",
@@ -180,7 +168,6 @@ def figure_7(cases: Cases) -> Exhibit:
                 "2's amplitude.",
             ),
             Claim(
-                id="F7",
                 statement="Kav of the sample, J and fn belong together: fn = √(Kav/J)/2π",
                 paper=f"{kav}, {inertia}, {fn}",
                 ours=f"{implied:.2f} Hz from the printed Kav and J; fn and J give {measured.fit.mean:,.0f} N·m/rad",

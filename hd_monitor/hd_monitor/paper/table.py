@@ -4,15 +4,14 @@ import textwrap
 from collections.abc import Iterable
 
 from .claim import Claim, Outcome
-from .exhibit import Exhibit
+from .exhibit import Exhibit, all_claims
 
 _TAGS = {Outcome.PASS: "pass", Outcome.FAIL: "FAIL", Outcome.CONTRADICTION: "contradiction"}
 _INDENT = " " * 21
 
 
-def claim_lines(claim: Claim, width: int = 100) -> list[str]:
-    """One claim: what is claimed, the paper's value, ours, and the note."""
-    head = f"{claim.id:6s}{_TAGS[claim.outcome]:15s}"
+def _claim_lines(figure: str, claim: Claim, width: int) -> list[str]:
+    head = f"{figure:6s}{_TAGS[claim.outcome]:15s}"
     lines = textwrap.wrap(claim.statement, width, initial_indent=head, subsequent_indent=_INDENT)
     for name, text in (("paper", claim.paper), ("ours", claim.ours), ("note", claim.note)):
         if text:
@@ -23,14 +22,14 @@ def claim_lines(claim: Claim, width: int = 100) -> list[str]:
 
 
 def claim_table(exhibits: Iterable[Exhibit], width: int = 100) -> str:
-    """Every claim below the other, then the counts."""
-    claims = [claim for exhibit in exhibits for claim in exhibit.claims]
-    lines = [line for claim in claims for line in claim_lines(claim, width)]
-    return "\n".join([*lines, "", summary(claims)]) if claims else ""
+    """List every claim with the paper's value, ours and the note, wrapped to `width` characters; then the counts."""
+    exhibits = tuple(exhibits)
+    lines = [line for shown in exhibits for claim in shown.claims for line in _claim_lines(shown.id, claim, width)]
+    return "\n".join([*lines, "", summary(all_claims(exhibits))]) if lines else ""
 
 
 def fact_table(exhibits: Iterable[Exhibit]) -> str:
-    """Results that no claim is held against, by exhibit."""
+    """List the results that no claim is held against, by exhibit."""
     lines = []
     for exhibit in exhibits:
         if exhibit.facts:
@@ -40,7 +39,7 @@ def fact_table(exhibits: Iterable[Exhibit]) -> str:
 
 
 def summary(claims: Iterable[Claim]) -> str:
-    """How many claims have which outcome, in a sentence."""
+    """Say in a sentence how many claims have which outcome."""
     outcomes = [claim.outcome for claim in claims]
     passed, failed, contradicting = (outcomes.count(o) for o in (Outcome.PASS, Outcome.FAIL, Outcome.CONTRADICTION))
     return (

@@ -6,13 +6,13 @@ import pytest
 
 from hd_monitor.model import StiffnessSeries, steady_state
 from hd_monitor.paper.claim import Outcome
-from hd_monitor.paper.line_figures import REVOLUTIONS, equation_5, figure_8, line_distance, peak_near
+from hd_monitor.paper.line_figures import equation_5, figure_8, line_distance, peak_near
 from hd_monitor.paper.records import steady_record
 
 
 def test_figure_8_lines_stand_at_k_times_25_and_25_3125_hz(cases):
     case = cases["table_1"]
-    record = steady_record(case.model, case.speed, REVOLUTIONS)
+    record = steady_record(case.model, case.speed)
     for k in (1, 2, 3):
         for line in (25.0 * k, 25.3125 * k):
             assert peak_near(record, record.response.displacement, line, 1e-8) == pytest.approx(line, abs=0.02)
@@ -20,7 +20,7 @@ def test_figure_8_lines_stand_at_k_times_25_and_25_3125_hz(cases):
 
 def test_figure_8_time_integration_and_harmonic_balance_agree(cases):
     case = cases["table_1"]
-    record = steady_record(case.model, case.speed, REVOLUTIONS)
+    record = steady_record(case.model, case.speed)
     state = steady_state(case.model, case.speed)
     orders = [k * order for k in (1, 2, 3) for order in case.model.reducer.output_orders]
     balance = [abs(state.acceleration_phasor(order)) for order in orders]
@@ -43,7 +43,7 @@ def test_figure_8_fails_at_another_speed_or_without_defects(cases, altered, outc
 @pytest.mark.parametrize("k", [1, 2, 3])
 def test_equation_5(cases, speed, k):
     model = cases["table_1"].model
-    record = steady_record(model, speed, REVOLUTIONS)
+    record = steady_record(model, speed)
     orders = model.reducer.output_orders
     measured = line_distance(record, k * orders.circular_spline, k * orders.flexspline)
     assert measured == pytest.approx(k * speed / 30.0 * (162 / 160 - 1.0), rel=0.01)

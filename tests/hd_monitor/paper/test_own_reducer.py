@@ -5,7 +5,8 @@ import pytest
 
 from hd_monitor.model import scale_defects
 from hd_monitor.paper.cases import Range, load_own_case, paper_file
-from hd_monitor.paper.own_reducer import FIGURES, show
+from hd_monitor.paper.own_reducer import FIGURES
+from hd_monitor.paper.reproduction import compute
 
 
 @pytest.fixture(scope="module")
@@ -14,23 +15,23 @@ def case():
 
 
 def test_every_figure_is_shown_for_another_reducer(case):
-    exhibits = show(case)
-    assert [shown.id for shown in exhibits] == [name for name, *_ in FIGURES]
+    exhibits = compute(FIGURES, case)
+    assert [shown.id for shown in exhibits] == [entry.id for entry in FIGURES]
     assert all(shown.panels and not shown.claims for shown in exhibits)
 
 
 def test_characteristic_numbers_are_this_reducers(case):
-    (shown,) = show(case, ["F4"])
+    (shown,) = compute(FIGURES, case, ["F4"])
     facts = dict(shown.facts)
     assert facts["reduction"] == "101"
     assert facts["flexspline, cycles per wave-generator revolution"] == "2.00000"
     assert facts["circular spline, cycles per wave-generator revolution"] == f"{2 * 200 / 202:.5f}"
-    assert facts["output travel that parts the pairs k = 1, 2, 3"].startswith("180°, 90°, 60°")
+    assert facts["output travel that separates the pairs k = 1, 2, 3"].startswith("180°, 90°, 60°")
 
 
 def test_unstable_speeds_are_named(case):
     wild = replace(case, model=scale_defects(case.model, 4.0), speeds=Range(1480.0, 1740.0, 20.0))
-    (shown,) = show(wild, ["F16"])
+    (shown,) = compute(FIGURES, wild, ["F16"])
     curve = shown.panels[0].curves[0]
     assert np.isnan(curve.y).any()
     assert "1680" in dict(shown.facts)["unstable speeds (left out of the curve)"]
@@ -38,5 +39,5 @@ def test_unstable_speeds_are_named(case):
 
 def test_a_reducer_that_is_stable_nowhere_is_shown_as_such(case):
     wild = replace(case, model=scale_defects(case.model, 5.0), speeds=Range(1660.0, 1700.0, 20.0))
-    (shown,) = show(wild, ["F16"])
+    (shown,) = compute(FIGURES, wild, ["F16"])
     assert dict(shown.facts)["highest"] == "none: no stable speed"

@@ -71,7 +71,7 @@ def example(passed: bool = True) -> Exhibit:
             ),
             Panel(title="square", x_label="x", y_label="y", curves=(Curve(x=X, y=X),), equal=True),
         ),
-        claims=(Claim(id="X1", statement="a < b", paper="yes", ours="b > a", passed=passed, note="of course"),),
+        claims=(Claim(statement="a < b", paper="yes", ours="b > a", passed=passed, note="of course"),),
         facts=(("speed", "3 rpm"),),
     )
 

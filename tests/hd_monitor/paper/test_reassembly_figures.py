@@ -28,7 +28,8 @@ def test_figure_18_peak_halves(cases):
 
 
 def test_figure_18_verdicts(cases):
-    before, after = (diagnose(cases[name], 1300.0) for name in ("sample_before", "sample_after"))
+    assert cases["sample_before"].speed == cases["sample_after"].speed == 1300.0
+    before, after = (diagnose(cases[name]) for name in ("sample_before", "sample_after"))
     assert before.verdict.component is Component.CIRCULAR_SPLINE
     assert after.verdict.component is Component.NONE
     for name, assessment in (("sample_before", before), ("sample_after", after)):

@@ -5,7 +5,7 @@ import pytest
 from hd_monitor.errors import ParameterError
 from hd_monitor.paper.claim import Claim, Outcome
 from hd_monitor.paper.exhibit import Exhibit
-from hd_monitor.paper.reproduction import EXHIBITS, compute, reproduce, select
+from hd_monitor.paper.reproduction import EXHIBITS, Entry, compute, select
 from hd_monitor.paper.table import claim_table, summary
 
 PROMISED = "F4 F7 T1 F8 E5 F9 F10a F10b F11a F11b F13a F13b F13c F14 F15 F16 F17 F18a F18b F19 F20 ST"
@@ -13,7 +13,6 @@ PROMISED = "F4 F7 T1 F8 E5 F9 F10a F10b F11a F11b F13a F13b F13c F14 F15 F16 F17
 
 def claim(outcome: Outcome) -> Claim:
     return Claim(
-        id="X1",
         statement="water is wet",
         paper="wet",
         ours="moist",
@@ -34,7 +33,6 @@ def test_every_exhibit_has_its_own_claims_and_something_to_see(exhibit, name):
     shown = exhibit(name)
     assert shown.id == name
     assert shown.claims
-    assert all(c.id == name for c in shown.claims)
     assert shown.panels
     for panel in shown.panels:
         assert panel.x_label
@@ -62,16 +60,16 @@ def test_unknown_figures_are_refused_with_the_list(name):
         select([name], EXHIBITS)
 
 
-def test_progress_tells_each_exhibit_and_its_failures():
+def test_progress_names_each_exhibit_and_its_failures():
     lines: list[str] = []
     shown = Exhibit(id="X1", title="t", caption="c", claims=(claim(Outcome.FAIL), claim(Outcome.PASS)))
-    compute([("X1", "an example", lambda: shown)], lines.append)
+    compute([Entry[None]("X1", "an example", lambda _: shown)], None, progress=lines.append)
     assert len(lines) == 1
     assert re.match(r"\[ 1/1\] X1 +an example: 1 of 2 claims FAIL, [\d.]+ s", lines[0])
 
 
-def test_reproduce_some(cases):
-    assert [shown.id for shown in reproduce(cases, ["F4"])] == ["F4"]
+def test_only_chosen_exhibits_are_computed(cases):
+    assert [shown.id for shown in compute(EXHIBITS, cases, ["F4"])] == ["F4"]
 
 
 @pytest.mark.parametrize(
@@ -84,7 +82,7 @@ def test_table_shows_claim_paper_ours_outcome_and_note(outcome, word):
 
 
 def test_a_contradiction_that_our_numbers_do_not_confirm_fails():
-    unconfirmed = Claim(id="X", statement="", paper="", ours="", passed=False, contradiction=True)
+    unconfirmed = Claim(statement="", paper="", ours="", passed=False, contradiction=True)
     assert unconfirmed.outcome is Outcome.FAIL
 
 

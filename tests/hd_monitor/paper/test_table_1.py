@@ -19,7 +19,7 @@ def test_the_case_is_the_printed_table(cases):
 
 def test_table_1_is_recovered_from_vibration(cases):
     case = cases["table_1"]
-    found = diagnose(case, case.speed).identification
+    found = diagnose(case).identification
     assert found is not None
     np.testing.assert_allclose(np.abs(found.flexspline), printed.TABLE_1["flexspline"], atol=1e-3)
     np.testing.assert_allclose(np.abs(found.circular_spline), printed.TABLE_1["circular_spline"], atol=1e-3)
