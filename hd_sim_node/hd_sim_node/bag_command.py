@@ -11,7 +11,7 @@ from typing import Any
 from hd_monitor.errors import HdMonitorError, ParameterError
 
 from .defects import CUSTOM, DEFECTS
-from .node_parameters import NODE_PARAMETERS
+from .parameters import NODE_PARAMETERS
 from .programmes import PROGRAMMES
 from .settings import RigSettings, pick
 

@@ -15,8 +15,7 @@ from hd_monitor.ros.declaration import answer, declare, describe
 from hd_monitor.ros.managed_node import ManagedNode, logged, run
 from hd_monitor.ros.queue import queue_depth
 
-from .node_parameters import NODE_PARAMETERS
-from .parameters import CHANGEABLE, PARAMETERS
+from .parameters import CHANGEABLE, NODE_PARAMETERS, PARAMETERS
 from .publishers import WRITERS, Writer
 from .settings import RigSettings, pick
 from .simulation import Simulation, check_stability

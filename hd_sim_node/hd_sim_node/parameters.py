@@ -1,6 +1,7 @@
-"""The table of the rig's parameters."""
+"""The tables of parameters: the rig's, and those of the node that publishes it."""
 
 from hd_monitor.parameter import Parameter
+from hd_monitor.settings import NODE_PARAMETERS as MONITOR_NODE_PARAMETERS
 from hd_monitor.settings import PARAMETERS as MONITOR_PARAMETERS
 
 from .defects import CUSTOM, DEFECTS
@@ -142,6 +143,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         description="what to do where the defects make vibration grow without bound at a speed of the programme",
     ),
 )
+"""Parameters of the rig: what is simulated."""
 
 
 CHANGEABLE = (
@@ -150,3 +152,34 @@ CHANGEABLE = (
     *("sensor.jitter", "sensor.delay", "joint_states.effort", "joint_states.velocity", "joint_states.resolution"),
 )
 """Parameters that begin so may be changed while the rig runs; all others decide how it is set up."""
+
+NODE_PARAMETERS: tuple[Parameter, ...] = (
+    *(parameter for parameter in MONITOR_NODE_PARAMETERS if parameter.name == "autostart"),
+    Parameter(
+        name="time_scale",
+        default=1.0,
+        low=0.001,
+        high=10_000.0,
+        description="simulated seconds in a second; stamps start now and advance by simulated time",
+    ),
+    Parameter(
+        name="wait_for_subscribers",
+        default=0,
+        low=0,
+        high=100,
+        description="start when joint_states and the vibration's topics each have so many subscribers; 0: at once",
+    ),
+    Parameter(name="exit_at_end", default=False, description="end the process when the programme has ended"),
+    Parameter(
+        name="queue_seconds",
+        default=4.0,
+        unit="s",
+        low=0.1,
+        high=60.0,
+        description="depth of the publishers' queues, in seconds of real time; Fast DDS keeps 5000 messages",
+    ),
+)
+"""Parameters of the node beside the rig's: how the simulation is published."""
+
+ALL_PARAMETERS = (*NODE_PARAMETERS, *PARAMETERS)
+"""What ``hd-monitor parameters`` lists."""

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from hd_sim_node.node_parameters import NODE_PARAMETERS
+from hd_sim_node.parameters import NODE_PARAMETERS
 from hd_sim_node.programmes import PROGRAMMES
 from hd_sim_node.settings import RigSettings, pick
 from hd_sim_node.stability import unstable_speeds

@@ -5,8 +5,7 @@ import pytest
 from tests.hd_sim_node.rig_process import MODULE, NODE, arguments, blocks_of
 from tests.managed import change_state, set_parameter, state
 
-from hd_sim_node.node_parameters import NODE_PARAMETERS
-from hd_sim_node.parameters import CHANGEABLE, PARAMETERS
+from hd_sim_node.parameters import CHANGEABLE, NODE_PARAMETERS, PARAMETERS
 
 pytestmark = pytest.mark.ros
 

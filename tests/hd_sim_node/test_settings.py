@@ -8,8 +8,7 @@ from hd_monitor.errors import GeometryError, ParameterError
 from hd_monitor.model import StiffnessSeries
 from hd_monitor.settings import PARAMETERS as MONITOR_PARAMETERS
 from hd_sim_node.defects import FAULTY, HEALTHY
-from hd_sim_node.node_parameters import NODE_PARAMETERS
-from hd_sim_node.parameters import CHANGEABLE, PARAMETERS
+from hd_sim_node.parameters import CHANGEABLE, NODE_PARAMETERS, PARAMETERS
 from hd_sim_node.settings import RigSettings, pick
 
 EVERYTHING = (*PARAMETERS, *NODE_PARAMETERS)

@@ -1,5 +1,6 @@
-"""The core is numpy and scipy only, so that it runs where there is no ROS, no display and no plotting library."""
+"""The core needs numpy and scipy only: no ROS, no display, no plotting library. Nothing here needs the simulator."""
 
+import ast
 import json
 import subprocess
 import sys
@@ -12,6 +13,7 @@ import hd_monitor
 SHELLS = {"ros", "offline", "paper", "cli"}
 ALLOWED = {"hd_monitor", "numpy", "scipy"}
 PACKAGE = Path(hd_monitor.__file__).parent
+ROOT = Path(__file__).resolve().parents[2]
 
 REPORT_LOADED = """
 import importlib, json, sys
@@ -43,6 +45,41 @@ def third_party_packages_loaded_by(*modules: str) -> set[str]:
     assert done.returncode == 0, done.stderr
     # A compiled module may import its internals under names that start with an underscore.
     return {name for name in json.loads(done.stdout) if not name.startswith("_")}
+
+
+def modules_named_in(source: str) -> set[str]:
+    """Find what a module imports, at its top or later, by a statement or by a name in a string."""
+    found = set()
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and not node.level:
+            found.add(node.module or "")
+        elif isinstance(node, ast.Call) and ast.unparse(node.func).rpartition(".")[2] in {
+            "import_module",
+            "__import__",
+        }:
+            found |= {str(word.value) for word in node.args if isinstance(word, ast.Constant)}
+    return found
+
+
+@pytest.mark.parametrize("source", ["import a.b", "def f():\n from a import b", "importlib.import_module('a.b')"])
+def test_every_kind_of_import_is_seen(source: str) -> None:
+    assert {name.partition(".")[0] for name in modules_named_in(source)} == {"a"}
+
+
+def test_no_module_imports_the_simulator() -> None:
+    # hd_sim_node depends on this package: the other way round they would be a circle.
+    paths = sorted([*PACKAGE.rglob("*.py"), *(ROOT / "hd_monitor" / "launch").glob("*.py")])
+    assert len(paths) > 100
+    offenders = {
+        path for path in paths for name in modules_named_in(path.read_text()) if name.startswith("hd_sim_node")
+    }
+    assert not offenders
+
+
+def test_package_xml_does_not_need_the_simulator() -> None:
+    assert "hd_sim_node" not in (ROOT / "hd_monitor" / "package.xml").read_text()
 
 
 def test_the_core_is_found() -> None:

@@ -1,35 +1,41 @@
-"""Entry point of ``hd-monitor``: finds the subcommand's module and runs it."""
+"""Entry point of ``hd-monitor``: find the subcommand's module, here or in another package, and run it."""
 
 import argparse
 import importlib
 import os
 import signal
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from importlib.metadata import EntryPoint
 from typing import Protocol, cast
 
 from ..errors import HdMonitorError
 from ..process import set_up_process
+from . import extensions
 
 UNUSABLE_INPUT = 2
-"""Exit status for input of which nothing can be said."""
+"""Exit status for unusable input, or a package that is not installed."""
 
-NOBODY_READS = 128 + signal.SIGPIPE
-"""Exit status where the reader of the output left, as a shell reports it of other commands."""
+READER_GONE = 128 + signal.SIGPIPE
+"""Exit status where the reader of the output has left, as a shell reports it of other commands."""
+
+_ROS = {"rclpy", "rcl_interfaces", "builtin_interfaces", "lifecycle_msgs", "std_srvs"}
 
 COMMANDS = {
-    "demo": ("hd_monitor.cli.demo", "simulate a defective reducer and watch it over real DDS"),
-    "replay": ("hd_monitor.cli.replay", "put a recorded bag through the same core, with JSON and a report"),
-    "compare": ("hd_monitor.cli.compare", "compare two bags or two JSON results: what changed"),
-    "identify": ("hd_monitor.cli.identify", "estimate the stiffness indexes, fn and ζ from a recorded run"),
-    "parameters": ("hd_monitor.cli.parameters", "list every parameter of both nodes, as a page or as a parameter file"),
-    "paper": ("hd_monitor.cli.paper", "reproduce every figure, table and claim of the source paper"),
+    "replay": "put a recorded bag through the same core, with JSON and a report",
+    "compare": "compare two bags or two JSON results: what changed",
+    "identify": "estimate the stiffness indexes, fn and ζ from a recorded run",
+    "parameters": "list every parameter of the nodes, as a page or as a parameter file",
+    "paper": "reproduce every figure, table and claim of the source paper",
 }
-"""Subcommand: (module, help). A module is imported only when its command runs, so that none needs another's extras."""
+"""Help by subcommand. Its module, of the same name, is imported only to run it: none needs the extras of another."""
+
+SIMULATOR_COMMANDS = {"demo": "simulate a defective reducer and watch it over real DDS"}
+"""Help by subcommand of the simulator's package, listed even where that is not installed."""
 
 
 class Command(Protocol):
-    """What a subcommand's module offers."""
+    """The contents of a subcommand's module."""
 
     def configure(self, parser: argparse.ArgumentParser) -> None:
         """Add the command's arguments."""
@@ -46,43 +52,45 @@ def main(argv: Sequence[str] | None = None) -> int:
         prog="hd-monitor", description="Watches harmonic-drive reducers and names the part that is going bad."
     )
     subparsers = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    chosen = next((word for word in words if word in COMMANDS), None)
-    module: Command | None = None
-    for name, (path, text) in COMMANDS.items():
-        subparser = subparsers.add_parser(name, help=text, description=text)
-        if name == chosen:
-            try:
-                module = cast("Command", importlib.import_module(path))
-            except ModuleNotFoundError as error:
-                print(f"hd-monitor {name}: {_missing(error)}", file=sys.stderr)
-                return UNUSABLE_INPUT
-            module.configure(subparser)
-    arguments = parser.parse_args(words)
-    if module is None:  # argparse has already refused anything else
-        parser.error(f"unknown command {arguments.command!r}")
+    added = extensions.declared(extensions.COMMANDS)
+    origins = {name: f"from the package {entry.module.partition('.')[0]}" for name, entry in added.items()}
+    texts = {**origins, **SIMULATOR_COMMANDS, **COMMANDS}
+    chosen = next((word for word in words if word in texts), None)
     try:
-        status = module.run(arguments)
+        for name, text in texts.items():
+            subparser = subparsers.add_parser(name, help=text, description=text)
+            if name == chosen:
+                command = _load(name, added)
+                command.configure(subparser)
+                subparser.set_defaults(run=command.run)
+        arguments = parser.parse_args(words)
+        status: int = arguments.run(arguments)
         sys.stdout.flush()
         return status
-    except BrokenPipeError:  # who reads has had enough, as `| head` has; nor must the flush at the end complain
+    except BrokenPipeError:  # the reader has seen enough, as `| head` has; nor may the flush at exit complain
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return NOBODY_READS
-    except HdMonitorError as error:
-        print(f"hd-monitor {arguments.command}: {error}", file=sys.stderr)
+        return READER_GONE
+    except (HdMonitorError, ModuleNotFoundError) as error:
+        reason = _missing(error) if isinstance(error, ModuleNotFoundError) else error
+        print(f"hd-monitor {chosen}: {reason}", file=sys.stderr)
         return UNUSABLE_INPUT
     except KeyboardInterrupt:
         return 130
 
 
-_SELF_MADE = {"hd_monitor", "hd_sim_node"}
-_ROS = {"rclpy", "rcl_interfaces", "builtin_interfaces", "lifecycle_msgs", "std_srvs"}
+def _load(name: str, added: Mapping[str, EntryPoint]) -> Command:
+    if name in COMMANDS:
+        return cast("Command", importlib.import_module(f"hd_monitor.cli.{name}"))
+    if name not in added:
+        raise HdMonitorError(extensions.SIMULATOR_MISSING)
+    return cast("Command", added[name].load())
 
 
 def _missing(error: ModuleNotFoundError) -> str:
     """Say what is not installed and how to get it."""
-    name = (error.name or "").split(".")[0]
-    if name in _SELF_MADE:
-        return f"needs the package {error.name!r}, which is not installed; build or install this repository as a whole"
+    name = (error.name or "").partition(".")[0]
+    if name == "hd_sim_node":
+        return extensions.SIMULATOR_MISSING
     if name in _ROS or name.endswith("_msgs"):
         return (
             f"needs ROS 2 ({name} is missing): source your ROS installation, or run pip install '.[ros]' "

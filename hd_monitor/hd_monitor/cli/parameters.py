@@ -1,44 +1,40 @@
 """``hd-monitor parameters``: every parameter with unit, range and description, as Markdown or as a parameter file."""
 
 import argparse
-import importlib
 import math
 import textwrap
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
+from ..errors import HdMonitorError
 from ..parameter import Parameter
 from ..settings import NODE_PARAMETERS, PARAMETERS
+from . import extensions
 
 WIDTH = 110
+MONITOR, SIMULATOR = "hd_monitor_node", "hd_sim_node"
+JOINTS = Parameter(
+    name="joints",
+    default="[joint]",
+    description="names of the joints watched; one alone called `joint` takes the only one in joint_states",
+)
 
 HEAD = """\
 # Parameters
 
 <!-- Made by `hd-monitor parameters > msgs_doc/parameters.md`; a test holds this page to the code. -->
 
-Both nodes take their parameters from ordinary ROS parameter files (`--ros-args --params-file FILE`) or one by one
-(`-p NAME:=VALUE`); `hd-monitor parameters --format yaml` prints such a file with every default. A value out of its
-range, of the wrong type or impossible beside the others ends the node with one line that says why and status 2; at run
-time it is refused with the same words. A whole number will do where a real one is asked for.
+The nodes take their parameters from ordinary ROS parameter files (`--ros-args --params-file FILE`) or one by one
+(`-p NAME:=VALUE`); `hd-monitor parameters --format yaml` prints such a file with every default. A value that is out of
+range, of the wrong type or in conflict with others ends the node with status 2 and one line that says why; at run time
+it is refused with the same message. A whole number may stand where a real one is expected. A parameter that both nodes
+have means the same in both, so that one file can serve both.
 """
 
-MONITOR = """\
-## hd_monitor_node
-
+MONITOR_HEAD = """
 With one joint the parameters stand at the top level. With several (`joints: [shoulder, elbow]`) those at the top level
 are common to all, and each joint may override any of them below its name (`elbow.reducer.serial`). `diagnosis.*` may be
 changed while the node runs (with several joints: below the joint's name); everything else is fixed at the start. A
 parameter file may be shared with other nodes: names outside the groups below are ignored with a warning.
-
-| name | default | description |
-|---|---|---|
-| `joints` | `[joint]` | names of the joints watched; one alone called `joint` takes the only one in joint_states |
-"""
-
-RIG = """\
-## hd_sim_node
-
-The rig's reducer and dynamics have the monitor's names, so that one file serves both nodes.
 """
 
 
@@ -50,34 +46,33 @@ def configure(parser: argparse.ArgumentParser) -> None:
         default="markdown",
         help="a page that lists them, or a parameter file with every default (default: %(default)s)",
     )
-    parser.add_argument("--node", choices=("monitor", "sim"), help="of one node only (default: both)")
+    parser.add_argument("--node", choices=("monitor", "sim"), help="of one node only (default: every one installed)")
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Print the parameters."""
-    nodes = (arguments.node,) if arguments.node else ("monitor", "sim")
-    print(markdown(nodes) if arguments.format == "markdown" else yaml(nodes), end="")
+    tables = node_tables()
+    if arguments.node:
+        name = MONITOR if arguments.node == "monitor" else SIMULATOR
+        if name not in tables:
+            raise HdMonitorError(extensions.SIMULATOR_MISSING)
+        tables = {name: tables[name]}
+    print(markdown(tables) if arguments.format == "markdown" else yaml(tables), end="")
     return 0
 
 
-def markdown(nodes: Sequence[str]) -> str:
+def node_tables() -> dict[str, Sequence[Parameter]]:
+    """Gather the parameters of every installed node, by the node's name."""
+    added = {name: entry.load() for name, entry in extensions.declared(extensions.PARAMETERS).items()}
+    return {MONITOR: (JOINTS, *NODE_PARAMETERS, *PARAMETERS), **added}
+
+
+def markdown(tables: Mapping[str, Sequence[Parameter]]) -> str:
     """Write the page ``msgs_doc/parameters.md``."""
     parts = [HEAD]
-    if "monitor" in nodes:
-        parts.append(MONITOR + "\n".join(map(_brief, NODE_PARAMETERS)) + "\n")
-        parts += _groups(PARAMETERS)
-    if "sim" in nodes:
-        rig, node = _rig_parameters()
-        parts.append(RIG)
-        parts += _groups((*node, *rig))
+    for node, parameters in tables.items():
+        parts += [f"## {node}\n{MONITOR_HEAD if node == MONITOR else ''}", *_groups(parameters)]
     return "\n".join(parts)
-
-
-def _rig_parameters() -> tuple[tuple[Parameter, ...], tuple[Parameter, ...]]:
-    # By name: this package must not depend on the simulator's, which may not even be installed.
-    rig = importlib.import_module("hd_sim_node.parameters").PARAMETERS
-    node = importlib.import_module("hd_sim_node.node_parameters").NODE_PARAMETERS
-    return rig, node
 
 
 def _groups(parameters: Sequence[Parameter]) -> Iterator[str]:
@@ -89,10 +84,6 @@ def _groups(parameters: Sequence[Parameter]) -> Iterator[str]:
         head = f"### {name}" if name else "### Without a group"
         rows = "\n".join(map(_row, members))
         yield f"{head}\n\n| name | default | unit | range | description |\n|---|---|---|---|---|\n{rows}\n"
-
-
-def _brief(parameter: Parameter) -> str:
-    return f"| `{parameter.name}` | `{_value(parameter)}` | {parameter.description} |"
 
 
 def _row(parameter: Parameter) -> str:
@@ -123,15 +114,11 @@ def _range(parameter: Parameter) -> str:
     return f"{parameter.low:g} … {parameter.high:g}" if math.isfinite(parameter.high) else f"from {parameter.low:g}"
 
 
-def yaml(nodes: Sequence[str]) -> str:
+def yaml(tables: Mapping[str, Sequence[Parameter]]) -> str:
     """Write a parameter file with every default and its description."""
     lines = []
-    if "monitor" in nodes:
-        lines += ["hd_monitor_node:", "  ros__parameters:", "    joints: [joint]"]
-        lines += _yaml_lines((*NODE_PARAMETERS, *PARAMETERS))
-    if "sim" in nodes:
-        rig, node = _rig_parameters()
-        lines += ["hd_sim_node:", "  ros__parameters:", *_yaml_lines((*node, *rig))]
+    for node, parameters in tables.items():
+        lines += [f"{node}:", "  ros__parameters:", *_yaml_lines(parameters)]
     return "\n".join(lines) + "\n"
 
 

@@ -1,10 +1,12 @@
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
-from hd_monitor.cli.main import COMMANDS, main
+from hd_monitor.cli import extensions
+from hd_monitor.cli.main import COMMANDS, SIMULATOR_COMMANDS, main
 
 
 def test_help_lists_every_command(capsys: pytest.CaptureFixture[str]) -> None:
@@ -12,12 +14,11 @@ def test_help_lists_every_command(capsys: pytest.CaptureFixture[str]) -> None:
         main(["--help"])
     assert caught.value.code == 0
     output = capsys.readouterr().out
-    assert all(name in output for name in COMMANDS)
+    assert all(name in output for name in (*COMMANDS, *SIMULATOR_COMMANDS))
 
 
-@pytest.mark.parametrize("words", [[], ["dance"], ["demo", "--dance"]])
+@pytest.mark.parametrize("words", [[], ["dance"], ["replay", "--dance"]])
 def test_wrong_words_are_status_2(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
-    pytest.importorskip("rclpy")
     with pytest.raises(SystemExit) as caught:
         main(words)
     assert caught.value.code == 2
@@ -36,13 +37,12 @@ def run_without(package: str, *words: str) -> subprocess.CompletedProcess[str]:
     [
         ("rclpy", ("demo",), "source your ROS installation"),
         ("diagnostic_msgs", ("demo", "--defect", "both"), "needs ROS 2 (diagnostic_msgs is missing)"),
-        ("hd_sim_node", ("demo",), "build or install this repository as a whole"),
+        ("hd_sim_node", ("demo",), "needs the package hd_sim_node, which is not installed"),
+        ("hd_sim_node", ("parameters",), "needs the package hd_sim_node, which is not installed"),
         ("rosbags", ("replay", "bag"), "'.[offline]'"),
     ],
 )
 def test_what_is_missing_is_one_clear_line(package: str, words: tuple[str, ...], advice: str) -> None:
-    if package == "hd_sim_node":
-        pytest.importorskip("rclpy")
     done = run_without(package, *words)
     assert done.returncode == 2
     assert advice in done.stderr
@@ -50,12 +50,53 @@ def test_what_is_missing_is_one_clear_line(package: str, words: tuple[str, ...],
     assert not done.stdout
 
 
+@pytest.mark.parametrize("words", [["demo"], ["demo", "--help"], ["parameters", "--node", "sim"]])
+def test_without_the_simulators_package_its_commands_say_what_to_install(
+    words: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(extensions, "declared", lambda group: {})
+    assert main(words) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line == f"hd-monitor {words[0]}: {extensions.SIMULATOR_MISSING}"
+
+
+def test_without_the_simulators_package_the_rest_is_there(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(extensions, "declared", lambda group: {})
+    assert main(["parameters"]) == 0
+    output = capsys.readouterr().out
+    assert "## hd_monitor_node" in output
+    assert "## hd_sim_node" not in output
+
+
+def test_any_package_can_add_a_command(tmp_path: Path) -> None:
+    (tmp_path / "greeter.py").write_text(
+        "def configure(parser): parser.add_argument('name')\n"
+        "def run(arguments): print('hello', arguments.name); return 7\n"
+    )
+    metadata = tmp_path / "greeter-1.0.dist-info"
+    metadata.mkdir()
+    (metadata / "METADATA").write_text("Metadata-Version: 2.1\nName: greeter\nVersion: 1.0\n")
+    (metadata / "entry_points.txt").write_text(f"[{extensions.COMMANDS}]\ngreet = greeter\n")
+    paths = os.pathsep.join([str(tmp_path), os.environ.get("PYTHONPATH", "")])
+
+    def hd_monitor(*words: str) -> subprocess.CompletedProcess[str]:
+        command = [sys.executable, "-m", "hd_monitor.cli.main", *words]
+        environment = os.environ | {"PYTHONPATH": paths}
+        return subprocess.run(command, env=environment, capture_output=True, text=True, timeout=60, check=False)
+
+    done = hd_monitor("greet", "you")
+    assert (done.returncode, done.stdout) == (7, "hello you\n"), done.stderr
+    assert "from the package greeter" in hd_monitor("--help").stdout
+
+
 def test_a_command_needs_no_other_commands_packages() -> None:
     done = run_without("rclpy", "replay", "--help")
     assert done.returncode == 0, done.stderr
 
 
-def test_a_reader_that_leaves_is_no_error_worth_a_traceback() -> None:
+def test_a_reader_that_leaves_causes_no_traceback() -> None:
     reading, writing = os.pipe()
     os.close(reading)
     done = subprocess.run(

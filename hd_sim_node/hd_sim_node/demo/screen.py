@@ -7,11 +7,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TextIO
 
-LEVELS = ("OK", "WARN", "ERROR")
-_COLOURS = {"OK": "\x1b[32m", "WARN": "\x1b[33m", "ERROR": "\x1b[31m"}
+from hd_monitor.diagnosis.verdict import Level
+
+_COLOURS = {Level.OK: "\x1b[32m", Level.WARN: "\x1b[33m", Level.ERROR: "\x1b[31m"}
 _PLAIN_STEP = 0.1  # of the programme, between two plain lines that say nothing new
 _BAR = 30
-_SPLINES = (("flexspline", "flexspline index"), ("circular spline", "circular spline index"))
+_SPLINES = ("flexspline", "circular spline")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -20,39 +21,33 @@ class View:
 
     Attributes
     ----------
-    name, message, hardware_id : str
-    level : int
+    name, message : str
+    level : Level
     values : mapping of str to str
     """
 
     name: str
-    level: int
+    level: Level
     message: str
-    hardware_id: str
     values: Mapping[str, str]
 
-    @property
-    def word(self) -> str:
-        """Its level as a word."""
-        return LEVELS[self.level] if self.level < len(LEVELS) else f"level {self.level}"
-
     def number(self, key: str) -> float | None:
-        """Return the value of a key as a number; None if it is none."""
+        """Return the value of a key as a number; None if it is not one."""
         try:
             return float(self.values[key])
         except (KeyError, ValueError):
             return None
 
-    def percent(self, key: str) -> str:
-        """Write an index with its standard deviation."""
-        value, std = self.number(f"{key} (%)"), self.number(f"{key} std (%)")
+    def index(self, spline: str) -> str:
+        """Write a spline's index with its standard deviation."""
+        value, std = self.number(f"{spline} index (%)"), self.number(f"{spline} index std (%)")
         if value is None or std is None:
             return "unknown"
         return f"{value:.2f} ± {std:.2f} %" if std >= 0.005 else f"{value:.2f} ± <0.01 %"
 
 
 class Screen:
-    """Shows progress and the evolving verdict.
+    """Where progress and the evolving verdict are shown.
 
     Parameters
     ----------
@@ -76,12 +71,12 @@ class Screen:
         self._clear()
         print(text, file=self._out, flush=True)
 
-    def paragraph(self, name: str, text: str) -> None:
-        """Print a named text that stays, folded to the terminal's width."""
-        self._clear()
-        width = max(40, shutil.get_terminal_size((120, 24)).columns - 20)
-        for start, part in zip((f"  {name:18}", *[" " * 20] * len(text)), textwrap.wrap(text, width), strict=False):
-            print(f"{start}{part}", file=self._out, flush=True)
+    def table(self, heading: str, rows: Mapping[str, str]) -> None:
+        """Print named texts that stay, folded to the terminal's width."""
+        self.line(heading)
+        width = max(60, shutil.get_terminal_size((120, 24)).columns)
+        for name, text in rows.items():
+            self.line(textwrap.fill(text, width, initial_indent=f"  {name:18}", subsequent_indent=" " * 20))
 
     def update(self, view: View, progress: float) -> None:
         """Show a status; `progress` runs from 0 to 1."""
@@ -93,19 +88,19 @@ class Screen:
             self._drawn = len(lines)
             return
         component = view.values.get("component", "?")
-        key = (component, view.word)
+        key = (component, view.level.name)
         if key != self._shown or progress >= self._next_line:
             self._next_line = progress + _PLAIN_STEP
-            line = f"{progress:4.0%}  {self._speed(view)}  {view.word:5}  {component:15}  "
-            indexes = [f"{name} {view.percent(index)}" for name, index in _SPLINES]
+            line = f"{progress:4.0%}  {self._speed(view)}  {view.level.name:5}  {component:15}  "
+            indexes = [f"{spline} {view.index(spline)}" for spline in _SPLINES]
             if key != self._shown and component == "undetermined":
                 indexes = [view.message]
             print(line + ", ".join(indexes), file=self._out, flush=True)
             self._shown = key
 
-    def colour(self, word: str) -> str:
-        """Write a level's word in its colour, where there are colours."""
-        return f"{_COLOURS[word]}{word}\x1b[0m" if self._coloured and word in _COLOURS else word
+    def colour(self, level: Level) -> str:
+        """Write a level's name in its colour, where there are colours."""
+        return f"{_COLOURS[level]}{level.name}\x1b[0m" if self._coloured else level.name
 
     def _clear(self) -> None:
         if self._drawn:
@@ -130,9 +125,9 @@ class Screen:
             f"  programme        {self._bar(progress)}  {progress:4.0%}   {self._speed(view)}"
             + ("" if rms is None else f"   rms {rms:.2f} m/s²")
         ]
-        for name, key in _SPLINES:
-            index = view.number(f"{key} (%)") or 0.0
-            lines.append(f"  {name:15}  {self._bar(index / top)}  {view.percent(key)}")
+        for spline in _SPLINES:
+            index = view.number(f"{spline} index (%)") or 0.0
+            lines.append(f"  {spline:15}  {self._bar(index / top)}  {view.index(spline)}")
         if warn is not None and error is not None:
             # The mark of the lower limit has its label on the left, that of the higher one on the right.
             place = round(warn / top * _BAR)
@@ -142,6 +137,6 @@ class Screen:
             lines.append(f"  {'':15}  {scale}")
         lines = [line[:width] for line in lines]
         text = textwrap.wrap(view.message, width - 11)[:4] or [""]
-        lines.append(f"  {self.colour(view.word)}{'':{6 - len(view.word)}} {text[0]}")
+        lines.append(f"  {self.colour(view.level)}{'':{6 - len(view.level.name)}} {text[0]}")
         lines += [f"         {more}" for more in text[1:]]
         return lines

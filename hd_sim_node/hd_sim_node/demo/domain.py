@@ -1,20 +1,26 @@
-"""Finds a ROS domain in which a command's nodes are among themselves."""
+"""Find a ROS domain that no other process on this machine uses."""
 
 import random
 import socket
 
-from ..errors import ParameterError
+from hd_monitor.errors import ParameterError
 
 DOMAINS = range(1, 102)  # above them, DDS ports run into the system's ephemeral ones
 LAST_DOMAIN = 232
-"""Highest ROS_DOMAIN_ID there is."""
+"""The highest ROS_DOMAIN_ID."""
 _FIRST_PORT, _PORTS_PER_DOMAIN = 7410, 250  # of a domain's first participant, by the DDS standard
 
 
 def free_domain() -> int:
-    """Find a ROS_DOMAIN_ID in which no DDS participant of this machine is.
+    """Find a ROS_DOMAIN_ID without a DDS participant on this machine.
 
-    A participant binds a UDP port that stands for its domain, so a port that can be bound is a domain that is free.
+    The first participant of a domain binds a UDP port that follows from the domain's number, so a port that can be
+    bound means a domain that is free.
+
+    Raises
+    ------
+    ParameterError
+        If every domain is in use.
     """
     for domain in random.sample(DOMAINS, len(DOMAINS)):
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:

@@ -3,7 +3,8 @@ import re
 
 import pytest
 
-from hd_monitor.cli.demo_screen import Screen, View
+from hd_monitor.diagnosis.verdict import Level
+from hd_sim_node.demo.screen import Screen, View
 
 
 class Terminal(io.StringIO):
@@ -13,7 +14,9 @@ class Terminal(io.StringIO):
         return True
 
 
-def view(component: str = "flexspline", level: int = 2, message: str = "The flexspline is defective") -> View:
+def view(
+    component: str = "flexspline", level: Level = Level.ERROR, message: str = "The flexspline is defective"
+) -> View:
     values = {
         "component": component,
         "speed (rpm)": "850.0",
@@ -25,14 +28,14 @@ def view(component: str = "flexspline", level: int = 2, message: str = "The flex
         "warn limit (%)": "5.000",
         "error limit (%)": "8.000",
     }
-    return View(name="/n: joint reducer", level=level, message=message, hardware_id="", values=values)
+    return View(name="/n: joint reducer", level=level, message=message, values=values)
 
 
 def test_plain_lines_come_on_news_and_every_tenth() -> None:
     out = io.StringIO()
     screen = Screen(out)
     for percent in range(101):
-        screen.update(view("none", 0) if percent < 55 else view(), percent / 100)
+        screen.update(view("none", Level.OK) if percent < 55 else view(), percent / 100)
     lines = out.getvalue().splitlines()
     assert 10 <= len(lines) <= 13
     assert lines[0].startswith("  0%   850 rpm  OK     none")
@@ -44,16 +47,16 @@ def test_plain_lines_come_on_news_and_every_tenth() -> None:
 
 def test_plain_lines_give_the_reason_of_an_undetermined_verdict() -> None:
     out = io.StringIO()
-    Screen(out).update(view("undetermined", 1, "The joint has not turned enough yet"), 0.0)
+    Screen(out).update(view("undetermined", Level.WARN, "The joint has not turned enough yet"), 0.0)
     assert "The joint has not turned enough yet" in out.getvalue()
 
 
 def test_unknown_numbers_are_shown_as_such() -> None:
     out = io.StringIO()
-    empty = View(name="", level=1, message="waiting", hardware_id="", values={})
+    empty = View(name="", level=Level.WARN, message="waiting", values={})
     Screen(out).update(empty, 0.0)
     assert "- rpm" in out.getvalue()
-    assert empty.percent("flexspline index") == "unknown"
+    assert empty.index("flexspline") == "unknown"
 
 
 def screen_after(text: str) -> list[str]:
@@ -103,7 +106,7 @@ def test_marks_of_the_limits_stand_below_their_places(monkeypatch: pytest.Monkey
 def test_no_colour_where_it_is_not_wanted(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("NO_COLOR", "1")
     monkeypatch.setenv("TERM", "xterm")
-    assert Screen(Terminal()).colour("ERROR") == "ERROR"
+    assert Screen(Terminal()).colour(Level.ERROR) == "ERROR"
 
 
 def test_plain_is_plain_on_a_terminal_too() -> None:

@@ -112,13 +112,13 @@ def test_a_node_that_refuses_to_start_is_quoted(start_module: Start) -> None:
 @pytest.mark.parametrize(
     ("words", "complaint"),
     [
-        (("--domain", "233"), "--domain = 233 is no ROS_DOMAIN_ID"),
-        (("--time-scale", "0"), "--time-scale = 0 stops the time"),
-        (("--time-scale", "nan"), "--time-scale = nan stops the time"),
+        (("--domain", "233"), "--domain = 233 is not a ROS_DOMAIN_ID"),
+        (("--time-scale", "0"), "--time-scale = 0 is not usable"),
+        (("--time-scale", "nan"), "--time-scale = nan is not usable"),
         (("--sim", "sensor.noize:=1.0"), "did you mean sensor.noise"),
         (("--sim", "sensor.noise"), "write NAME:=VALUE"),
         (("--monitor", "reducer.mount:=ceiling"), "choose one of"),
-        (("--seconds", "-1"), "--seconds = -1"),
+        (("--seconds", "-1"), "--seconds = -1 is not usable"),
     ],
 )
 def test_unusable_arguments_are_one_clear_line_and_status_2(
