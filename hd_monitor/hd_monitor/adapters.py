@@ -4,21 +4,19 @@ An :class:`Inputs` knows which message types its joint listens to and what of ea
 shells hand it the bytes as they come from the middleware or from a bag, so that they cannot differ in what they see.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import NamedTuple, Protocol
+from collections.abc import Sequence
+from typing import Protocol
 
 import numpy as np
 
 from . import cdr, contract
 from .arrays import FloatArray, IntArray
 from .cdr_layout import Fault
-from .errors import LayoutError, ParameterError
 from .settings import JointSettings
+from .sources import Quantity, Stamped
 
 UNNAMED_JOINT = "joint"
 """Name of a joint that the parameters do not name; it takes the only joint there is in joint_states."""
-
-_AXES = {"x": 0, "y": 1, "z": 2}
 
 
 class Sink(Protocol):
@@ -37,23 +35,6 @@ class Sink(Protocol):
         """Count a message that says nothing, and remember why."""
 
 
-class Source(NamedTuple):
-    """A topic that a joint listens to: relative name and ROS message type, as ``package/Type``."""
-
-    topic: str
-    type: str
-
-
-VIBRATION_SOURCES: Mapping[str, Source] = {
-    "block": Source(contract.TORSIONAL_ACCELERATION_BLOCK, "std_msgs/Float64MultiArray"),
-    "accel_stamped": Source(contract.TORSIONAL_ACCELERATION, "geometry_msgs/AccelStamped"),
-    "imu": Source(contract.IMU, "sensor_msgs/Imu"),
-}
-"""Vibration topic of each ``input.source``; the sensorless sources have none besides the motion's."""
-
-MOTION_SOURCE = Source(contract.JOINT_STATES, "sensor_msgs/JointState")
-
-
 class Inputs:
     """The inputs of one joint, as serialised messages.
 
@@ -64,35 +45,31 @@ class Inputs:
     settings : JointSettings
     sink : Sink
         Usually the joint's monitor.
-
-    Raises
-    ------
-    ParameterError
-        If an IMU is the source and the radius at which it sits is 0.
     """
 
     def __init__(self, joint: str, settings: JointSettings, sink: Sink) -> None:
         self._sink = sink
+        self._settings = settings
+        self._sources = settings.sources
         self._wanted = settings.input.joint_name
         self._joint = joint
         self._joint_seen = False
-        axis = settings.input.axis
-        self._axis, self._sign = _AXES[axis[-1]], -1.0 if axis.startswith("-") else 1.0
-        self._radius = settings.input.sensor_radius
-        self._source = settings.input.source
-        if self._source == "imu" and self._radius <= 0.0:
-            raise ParameterError(
-                f"input.sensor_radius = {self._radius:g} m with input.source = 'imu': a tangential acceleration "
-                "becomes an angular one by dividing by the radius; give the distance of the IMU from the joint's axis"
-            )
 
-    def add_vibration(self, messages: Sequence[bytes]) -> None:
-        """Feed messages of the joint's vibration topic, in the order of their arrival."""
-        if messages:
-            self._decoders[self._source](self, messages)
+    def add(self, quantity: Quantity, messages: Sequence[bytes]) -> None:
+        """Feed messages of one of the joint's topics, in the order of their arrival."""
+        decode = self._sources[quantity].decode
+        if decode is None:
+            self._add_motion(messages)
+            return
+        for item in decode(messages, self._settings):
+            if isinstance(item, str):
+                self._sink.reject(item)
+            elif isinstance(item, Stamped):
+                self._sink.add_vibration(item.stamps, item.values)
+            else:
+                self._sink.add_block(item)
 
-    def add_motion(self, messages: Sequence[bytes]) -> None:
-        """Feed serialised JointState messages, in the order of their arrival."""
+    def _add_motion(self, messages: Sequence[bytes]) -> None:
         groups, faults = cdr.decode_joint_states(messages)
         if len(groups) == 1 and not faults and (column := self._column(groups[0].names)) is not None:
             group = groups[0]
@@ -144,50 +121,3 @@ class Inputs:
             return f"joint_states carries {there}; set input.joint_name (or joints) to the one to watch"
         wanted = self._wanted or self._joint
         return f"joint {wanted!r} is not in joint_states, which carries {there}; check the name"
-
-    def _add_accel_stamped(self, messages: Sequence[bytes]) -> None:
-        samples = cdr.decode_accel_stamped(messages)
-        self._add_samples(samples, samples.angular[:, 2])
-
-    def _add_imu(self, messages: Sequence[bytes]) -> None:
-        samples = cdr.decode_imu(messages)
-        self._add_samples(samples, samples.linear[:, self._axis] * (self._sign / self._radius))
-
-    def _add_samples(self, samples: cdr.Samples, values: FloatArray) -> None:
-        for reason in samples.faults:
-            self._sink.reject(reason)
-        if samples.stamps.size:
-            self._sink.add_vibration(samples.stamps, np.ascontiguousarray(values))
-
-    def _add_blocks(self, messages: Sequence[bytes]) -> None:
-        for item in _in_order(*cdr.decode_multi_arrays(messages)):
-            if isinstance(item, str):
-                self._sink.reject(item)
-            else:
-                self._sink.add_block(item)
-
-    _decoders: Mapping[str, Callable[["Inputs", Sequence[bytes]], None]] = {
-        "block": _add_blocks,
-        "accel_stamped": _add_accel_stamped,
-        "imu": _add_imu,
-    }
-
-
-def _in_order(groups: list[cdr.MultiArrays], faults: list[Fault]) -> Iterator[contract.Block | str]:
-    """Yield the blocks, and what is wrong with those that are none, in the order of the messages."""
-    items: list[tuple[int, contract.Block | str]] = list(faults)
-    for group in groups:
-        places = group.place.tolist()
-        try:
-            blocks = contract.unpack_blocks(group.dimensions, group.data_offset, group.data)
-        except LayoutError as error:
-            items.extend((place, str(error)) for place in places)
-            continue
-        items.extend(
-            (place, str(block) if isinstance(block, LayoutError) else block)
-            for place, block in zip(places, blocks, strict=True)
-        )
-    if len(groups) > 1 or faults:
-        items.sort(key=lambda item: item[0])
-    for _, item in items:
-        yield item

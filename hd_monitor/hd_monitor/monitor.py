@@ -163,7 +163,7 @@ class Monitor:
         self._judge.change_limits(settings.diagnosis)
 
     def reset_latch(self) -> None:
-        """Let go of a latched verdict."""
+        """Release a latched verdict."""
         self._judge.reset_latch()
 
     def reset(self) -> None:
@@ -256,7 +256,7 @@ class Monitor:
         """Vibration at the sensor's radius [m/s²]; gravity and the arm's own motion taken off an IMU's signal."""
         values = self._radius * acceleration
         known = np.isfinite(values)
-        if self.settings.input.source != "imu" or int(known.sum()) < 2 * _SLOW_DEGREE:
+        if not self.settings.vibration.gravity or int(known.sum()) < 2 * _SLOW_DEGREE:
             return values
         place = np.linspace(-1.0, 1.0, values.size)
         slow = np.polynomial.Legendre.fit(place[known], values[known], _SLOW_DEGREE, domain=[-1.0, 1.0])

@@ -83,9 +83,9 @@ def time_reading(path: Path) -> float:
     with Bag(path) as bag:
         (item,) = plan(bag, Request())
         inputs = Inputs(item.joint, item.settings, Nowhere())
-        for window in bag.windows([topic for topic in item.topics if topic]):
-            inputs.add_motion(window.messages.get(item.topics.motion, []))
-            inputs.add_vibration(window.messages.get(item.topics.vibration or "", []))
+        for window in bag.windows(item.topics.values()):
+            for quantity, topic in item.topics.items():
+                inputs.add(quantity, window.messages.get(topic, []))
     return time.process_time() - start
 
 

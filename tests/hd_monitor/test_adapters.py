@@ -10,6 +10,7 @@ from hd_monitor.arrays import FloatArray, IntArray
 from hd_monitor.contract import Block
 from hd_monitor.errors import ParameterError
 from hd_monitor.settings import JointSettings
+from hd_monitor.sources import Quantity
 
 typesys = pytest.importorskip("rosbags.typesys")
 STORE = typesys.get_typestore(typesys.Stores.ROS2_JAZZY)
@@ -80,14 +81,14 @@ def inputs(joint: str = "joint", **parameters: Any) -> tuple[Inputs, Recorder]:
 
 def test_an_unnamed_joint_takes_the_only_one() -> None:
     feed, sink = inputs()
-    feed.add_motion([joint_state(1, elbow=0.5), joint_state(2, elbow=0.6)])
+    feed.add(Quantity.MOTION, [joint_state(1, elbow=0.5), joint_state(2, elbow=0.6)])
     assert sink.motion == [(1, 0.5, 2.0, 3.0), (2, 0.6, 2.0, 3.0)]
     assert sink.rejected == []
 
 
 def test_an_unnamed_joint_among_several_is_asked_for() -> None:
     feed, sink = inputs()
-    feed.add_motion([joint_state(1, elbow=0.5, wrist=0.6)])
+    feed.add(Quantity.MOTION, [joint_state(1, elbow=0.5, wrist=0.6)])
     assert sink.motion == []
     assert "elbow, wrist" in sink.rejected[0]
     assert "input.joint_name" in sink.rejected[0]
@@ -95,19 +96,19 @@ def test_an_unnamed_joint_among_several_is_asked_for() -> None:
 
 def test_a_named_joint_is_taken_from_among_several_whatever_their_order() -> None:
     feed, sink = inputs("wrist")
-    feed.add_motion([joint_state(1, elbow=0.5, wrist=0.6), joint_state(2, wrist=0.7, elbow=0.8)])
+    feed.add(Quantity.MOTION, [joint_state(1, elbow=0.5, wrist=0.6), joint_state(2, wrist=0.7, elbow=0.8)])
     assert [row[:2] for row in sink.motion] == [(1, 0.6), (2, 0.7)]
 
 
 def test_input_joint_name_goes_before_the_joints_own_name() -> None:
     feed, sink = inputs("wrist", input__joint_name="arm_wrist")
-    feed.add_motion([joint_state(1, wrist=0.5, arm_wrist=0.6)])
+    feed.add(Quantity.MOTION, [joint_state(1, wrist=0.5, arm_wrist=0.6)])
     assert sink.motion[0][:2] == (1, 0.6)
 
 
 def test_a_misspelt_joint_is_reported_with_the_names_there_are() -> None:
     feed, sink = inputs("elbwo")
-    feed.add_motion([joint_state(1, elbow=0.5)])
+    feed.add(Quantity.MOTION, [joint_state(1, elbow=0.5)])
     assert sink.motion == []
     assert "'elbwo' is not in joint_states, which carries elbow" in sink.rejected[0]
 
@@ -117,21 +118,22 @@ def test_messages_of_other_publishers_are_no_fault_once_the_joint_is_seen() -> N
     for batches in ([messages], [[m] for m in messages], [messages[:2], messages[2:]]):
         feed, sink = inputs("elbow")
         for batch in batches:
-            feed.add_motion(batch)
+            feed.add(Quantity.MOTION, batch)
         assert [row[:2] for row in sink.motion] == [(2, 0.5)]
         assert len(sink.rejected) == 1
 
 
 def test_blocks_come_in_order_and_wrong_layouts_are_reported() -> None:
     feed, sink = inputs()
-    feed.add_vibration(
+    feed.add(
+        Quantity.VIBRATION,
         [
             block(1, [1.0, 2.0]),
             block(2, [3.0], sequence=1),
             block(3, [4.0, 5.0], label="torque"),
             b"\0\1\0\0",
             block(4, [6.0, 7.0], sequence=2),
-        ]
+        ],
     )
     assert [b.stamp for b in sink.blocks] == [1, 2, 4]
     assert [b.samples.tolist() for b in sink.blocks] == [[1.0, 2.0], [3.0], [6.0, 7.0]]
@@ -142,7 +144,7 @@ def test_blocks_come_in_order_and_wrong_layouts_are_reported() -> None:
 @pytest.mark.parametrize(("axis", "expected"), [("x", 2.0), ("y", 4.0), ("-z", -6.0)])
 def test_an_imus_tangential_axis_becomes_angular_by_its_radius(axis: str, expected: float) -> None:
     feed, sink = inputs(input__source="imu", input__axis=axis, input__sensor_radius=0.5)
-    feed.add_vibration([imu(1, (1.0, 2.0, 3.0))])
+    feed.add(Quantity.VIBRATION, [imu(1, (1.0, 2.0, 3.0))])
     assert sink.vibration == [(1, expected)]
 
 

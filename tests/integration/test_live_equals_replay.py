@@ -8,12 +8,12 @@ from typing import Any
 import pytest
 from tests.hd_monitor.offline import recordings as rec
 
-from hd_monitor.adapters import MOTION_SOURCE, VIBRATION_SOURCES, Source
 from hd_monitor.diagnosis.status import status_of
 from hd_monitor.offline.bag import Bag
 from hd_monitor.offline.parameters import load_parameters
 from hd_monitor.offline.plan import Request, plan
 from hd_monitor.offline.replay import replay
+from hd_monitor.sources import INPUT_SOURCES, JOINT_STATES, Source
 
 from .conftest import MONITOR, RIG, Bench, arguments_of
 
@@ -44,13 +44,14 @@ class Recorder:
     """Subscribes to serialised messages and keeps them with the time of their arrival, as ``ros2 bag record`` does."""
 
     def __init__(self, peer: Any, sources: list[Source]) -> None:
+        self._peer = peer
+        self._subscriptions = {source: self._subscribe(source, 100_000) for source in sources}
+        self.messages: list[tuple[int, Source, bytes]] = []
+
+    def _subscribe(self, source: Source, depth: int) -> Any:
         from hd_monitor.ros.subscriptions import DrainedSubscription
 
-        self._peer = peer
-        self._subscriptions = {
-            source: DrainedSubscription(peer.node, source, depth=100_000, reliability="reliable") for source in sources
-        }
-        self.messages: list[tuple[int, Source, bytes]] = []
+        return DrainedSubscription(self._peer.node, source.topic, source.type, depth=depth, reliability="reliable")
 
     def matched(self) -> bool:
         """Whether every topic has a publisher that is known here."""
@@ -58,10 +59,8 @@ class Recorder:
 
     def open_gate(self) -> None:
         """Subscribe once more: the rig that waits for it starts now."""
-        from hd_monitor.ros.subscriptions import DrainedSubscription
-
         for source in self._subscriptions:
-            DrainedSubscription(self._peer.node, source, depth=1, reliability="reliable")
+            self._subscribe(source, 1)
 
     def drain(self) -> None:
         for source, subscription in self._subscriptions.items():
@@ -93,7 +92,7 @@ def test_every_live_status_is_replayed_value_by_value(
 ) -> None:
     parameters = tmp_path / "parameters.yaml"
     parameters.write_text(PARAMETERS.replace("SOURCE", source))
-    recorder = Recorder(peer, [MOTION_SOURCE, VIBRATION_SOURCES[source]])
+    recorder = Recorder(peer, [JOINT_STATES, INPUT_SOURCES[source]])
     start_module(MONITOR, "--ros-args", "--params-file", str(parameters))
     rig = start_module(RIG, *arguments_of((*RIG_PARAMETERS, f"publish:={publish}", "time_scale:=2.0")))
 

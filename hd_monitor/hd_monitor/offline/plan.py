@@ -6,12 +6,12 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from .. import cdr
-from ..adapters import VIBRATION_SOURCES
 from ..errors import ParameterError
 from ..settings import JointSettings, split_joints
+from ..sources import INPUT_SOURCES, JOINT_STATES, Quantity
 from .bag import Bag
 from .errors import BagError
-from .topics import JointTopics, TopicFinder
+from .topics import TopicFinder
 
 _SOURCE = "input.source"
 _JOINTS = "joints"
@@ -27,17 +27,18 @@ class JointPlan:
     joint : str
         Its name in the parameters.
     settings : JointSettings
-    topics : JointTopics
-    messages : tuple of (int, int)
-        Messages recorded on the topics of vibration and motion; of all joints where they share a topic.
+    topics : dict of Quantity to str
+        Full names.
+    messages : dict of Quantity to int
+        Messages recorded on these topics; of all joints where they share a topic.
     notes : tuple of str
         What was taken for granted.
     """
 
     joint: str
     settings: JointSettings
-    topics: JointTopics
-    messages: tuple[int, int]
+    topics: dict[Quantity, str]
+    messages: dict[Quantity, int]
     notes: tuple[str, ...] = ()
 
 
@@ -91,15 +92,15 @@ def plan(bag: Bag, request: Request) -> list[JointPlan]:
     if unknown := [joint for joint in request.joints if joint not in settings]:
         raise ParameterError(f"{', '.join(unknown)}: not among the parameters' joints, {', '.join(settings)}")
 
-    def count(topic: str | None) -> int:
+    def count(topic: str) -> int:
         return sum(recorded.messages for recorded in bag.topics if recorded.name == topic)
 
     plans = []
     for joint, own in settings.items():
         if request.joints and joint not in request.joints:
             continue
-        topics = finder.joint_topics(own.input.source, joint if several else None)
-        messages = count(topics.vibration), count(topics.motion)
+        topics = finder.joint_topics(own.sources, joint if several else None)
+        messages = {quantity: count(topic) for quantity, topic in topics.items()}
         plans.append(JointPlan(joint=joint, settings=own, topics=topics, messages=messages, notes=tuple(notes)))
     return plans
 
@@ -120,13 +121,14 @@ def joint_names(bag: Bag, topic: str) -> tuple[str, ...]:
 
 def _choose_source(finder: TopicFinder, notes: list[str]) -> str:
     """Choose the vibration signal where the parameters leave it open."""
-    for source in VIBRATION_SOURCES:
+    sensors = {name: source for name, source in INPUT_SOURCES.items() if source.quantity is Quantity.VIBRATION}
+    for name, source in sensors.items():
         if finder.has(source):
-            if source != "block":
-                notes.append(f"input.source is not given: {source} was recorded and is taken")
-            return source
-    if finder.has("joint_effort"):
-        wanted = ", ".join(source.topic for source in VIBRATION_SOURCES.values())
+            if name != "block":
+                notes.append(f"input.source is not given: {name} was recorded and is taken")
+            return name
+    if finder.has(JOINT_STATES):
+        wanted = ", ".join(source.topic for source in sensors.values())
         raise BagError(
             f"none of {wanted} was recorded; for a verdict from joint_states alone set input.source to joint_effort or "
             "joint_velocity, else name the vibration topic with --remap"
@@ -134,13 +136,15 @@ def _choose_source(finder: TopicFinder, notes: list[str]) -> str:
     return "block"
 
 
-def _discover(bag: Bag, finder: TopicFinder, source: str, request: Request) -> list[str]:
+def _discover(bag: Bag, finder: TopicFinder, name: str, request: Request) -> list[str]:
     """Take the joints below whose names vibration topics stand, if joint_states knows them and nobody was named."""
-    if source not in VIBRATION_SOURCES or request.namespace is not None or request.remap:
+    source = INPUT_SOURCES.get(name, JOINT_STATES)
+    if source is JOINT_STATES or request.namespace is not None or request.remap:
         return []
     prefixes = finder.prefixes(source)
     if len(prefixes) < 2 or any(not prefix for prefix in prefixes):
         return []
     names = [prefix.rpartition("/")[2] for prefix in prefixes]
-    known = joint_names(bag, finder.joint_topics("joint_effort").motion)
+    (motion,) = finder.joint_topics({Quantity.MOTION: JOINT_STATES}).values()
+    known = joint_names(bag, motion)
     return names if len(set(names)) == len(names) and set(names) <= set(known) else []

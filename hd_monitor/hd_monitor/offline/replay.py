@@ -44,17 +44,15 @@ class _Channel:
 
     def feed(self, window: Window) -> Iterator[Replayed]:
         """Hand over a window's messages; yield what the monitor says to them."""
-        motion = window.messages.get(self.plan.topics.motion, [])
-        vibration = window.messages.get(self.plan.topics.vibration or "", [])
-        if not motion and not vibration:
+        messages = {quantity: window.messages.get(topic) for quantity, topic in self.plan.topics.items()}
+        if not any(messages.values()):
             return
         if self._heard is not None and window.start - self._heard >= self._timeout:
             yield Replayed(plan=self.plan, assessment=self.monitor.silence(self._heard + self._timeout))
         self._heard = window.end
-        if motion:
-            self._inputs.add_motion(motion)
-        if vibration:
-            self._inputs.add_vibration(vibration)
+        for quantity, new in messages.items():
+            if new:
+                self._inputs.add(quantity, new)
         for assessment in self.monitor.advance():
             yield Replayed(plan=self.plan, assessment=assessment)
 
@@ -90,7 +88,7 @@ def replay(
     """
     known = identifiers or {}
     channels = [_Channel(plan, known.get(plan.joint)) for plan in plans]
-    topics = {topic for plan in plans for topic in plan.topics if topic is not None}
+    topics = {topic for plan in plans for topic in plan.topics.values()}
     pause = min(round(plan.settings.input.timeout * NANOSECONDS) for plan in plans)
     for window in bag.windows(topics, pause=pause):
         for channel in channels:

@@ -10,6 +10,7 @@ from ..contract import NANOSECONDS
 from ..diagnosis.status import status_of
 from ..diagnosis.verdict import Level
 from ..identification.result import Identification
+from ..sources import Quantity
 from .plan import JointPlan
 from .replay import Replayed
 
@@ -90,19 +91,20 @@ class JointResult:
         """Why nothing can be said of the joint; empty if something can."""
         if self.last is None:
             return f"joint {self.plan.joint!r}: too few messages were recorded for a single verdict"
-        quality, topics, (vibration, motion) = self.last.quality, self.plan.topics, self.plan.messages
+        quality = self.last.quality
         if not quality.motion_messages:
-            return f"joint {self.plan.joint!r}: no usable joint states: {self._why(topics.motion, motion)}"
-        if topics.vibration is not None and not quality.samples:
-            return f"joint {self.plan.joint!r}: no usable vibration samples: {self._why(topics.vibration, vibration)}"
+            return f"joint {self.plan.joint!r}: no usable joint states: {self._why(Quantity.MOTION)}"
+        if Quantity.VIBRATION in self.plan.topics and not quality.samples:
+            return f"joint {self.plan.joint!r}: no usable vibration samples: {self._why(Quantity.VIBRATION)}"
         return ""
 
-    def _why(self, topic: str, messages: int) -> str:
+    def _why(self, quantity: Quantity) -> str:
         """Say why nothing of a topic could be used."""
         assert self.last is not None
+        topic, messages = self.plan.topics[quantity], self.plan.messages[quantity]
         if fault := self.last.quality.last_fault:
             return fault
-        if self.plan.topics.vibration is None:
+        if len(self.plan.topics) == 1:
             return f"the recording's {messages} message(s) on {topic} are too few"
         return (
             f"those recorded on {topic} ({messages}) and those of the other input hardly overlap in time, by their "
@@ -125,7 +127,7 @@ class JointResult:
             "error_limit": last.error_limit,
             "quality": asdict(last.quality),
             "status": dict(status_of(last, plan.joint, plan.settings).values),
-            "topics": plan.topics._asdict(),
+            "topics": {quantity.value: plan.topics.get(quantity) for quantity in Quantity},
             "parameters": dict(plan.settings.values),
             "notes": list(plan.notes),
         }

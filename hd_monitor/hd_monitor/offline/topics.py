@@ -1,22 +1,14 @@
 """Which topics of a recording belong to a joint: by name, by type and by what the messages say of themselves."""
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import NamedTuple
 
-from ..adapters import MOTION_SOURCE, VIBRATION_SOURCES, Source
 from ..contract import BLOCK_LABEL
+from ..sources import Quantity, Source
 from .errors import BagError
 from .salvage import RawTopic
 
 Labels = Callable[[str], tuple[str, ...]]
 """Gives the labels of the dimensions of an array topic's first message."""
-
-
-class JointTopics(NamedTuple):
-    """Full names of the topics of one joint; `vibration` is None in the sensorless mode."""
-
-    vibration: str | None
-    motion: str
 
 
 class TopicFinder:
@@ -48,37 +40,31 @@ class TopicFinder:
         self._namespace = namespace
         self._remap = {name.strip("/"): target for name, target in (remap or {}).items()}
 
-    def joint_topics(self, source: str, joint: str | None = None) -> JointTopics:
-        """Find the topics of a joint whose ``input.source`` is `source`.
+    def joint_topics(self, sources: Mapping[Quantity, Source], joint: str | None = None) -> dict[Quantity, str]:
+        """Find the topics of a joint.
 
         Parameters
         ----------
-        source : str
+        sources : mapping of Quantity to Source
+            The inputs that it needs.
         joint : str, optional
-            Name below which the vibration topic stands; None if one joint is watched, whose topics stand alone.
+            Name below which its own topics stand; None if one joint is watched, whose topics stand alone.
 
         Raises
         ------
         BagError
             If a topic is not there, or more than one could be meant.
         """
-        motion = self._find(MOTION_SOURCE, MOTION_SOURCE.topic)
-        if source not in VIBRATION_SOURCES:
-            return JointTopics(None, motion)
-        wanted = VIBRATION_SOURCES[source]
-        name = wanted.topic if joint is None else f"{joint}/{wanted.topic}"
-        return JointTopics(self._find(wanted, name), motion)
+        return {quantity: self._find(source, source.name_below(joint)) for quantity, source in sources.items()}
 
-    def prefixes(self, source: str) -> list[str]:
-        """Namespaces, without the slashes around them, in which the vibration topic of `source` stands."""
-        wanted = VIBRATION_SOURCES[source]
-        suffix = f"/{wanted.topic}"
-        return [t.name.removesuffix(suffix).strip("/") for t in self._of_type(wanted) if t.name.endswith(suffix)]
+    def prefixes(self, source: Source) -> list[str]:
+        """Namespaces, without the slashes around them, in which a source's topic stands."""
+        suffix = f"/{source.topic}"
+        return [t.name.removesuffix(suffix).strip("/") for t in self._of_type(source) if t.name.endswith(suffix)]
 
-    def has(self, source: str) -> bool:
-        """Whether a topic for `source` stands in the recording by the contract's name, or by remapping."""
-        wanted = VIBRATION_SOURCES.get(source, MOTION_SOURCE)
-        return wanted.topic in self._remap or any(_ends(topic.name, wanted.topic) for topic in self._of_type(wanted))
+    def has(self, source: Source) -> bool:
+        """Whether a source's topic stands in the recording by the contract's name, or by remapping."""
+        return source.topic in self._remap or any(_ends(topic.name, source.topic) for topic in self._of_type(source))
 
     def _of_type(self, source: Source) -> list[RawTopic]:
         kind = source.type.replace("/", "/msg/")

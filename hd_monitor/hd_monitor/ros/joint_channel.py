@@ -1,4 +1,4 @@
-"""One joint's topics: its vibration subscription, its publishers, and the watch between them."""
+"""One joint's topics: its own subscriptions, its publishers, and the watch between them."""
 
 from collections.abc import Sequence
 
@@ -7,9 +7,9 @@ from rclpy.qos import QoSProfile
 from std_msgs.msg import Float64MultiArray
 
 from .. import contract
-from ..adapters import VIBRATION_SOURCES, Source
 from ..settings import JointSettings
-from .joint_watch import VIBRATION, Explain, JointWatch
+from ..sources import Quantity
+from .joint_watch import Explain, JointWatch
 from .messages import rms_message, zoom_message
 from .queue import most_messages, queue_depth
 from .subscriptions import DrainedSubscription
@@ -40,8 +40,8 @@ class JointChannel:
 
     def __init__(self, node: LifecycleNode, joint: str, settings: JointSettings, several: bool, now: int) -> None:
         self._node = node
-        self._prefix = f"{joint}/" if several else ""
-        self._vibration: DrainedSubscription | None = None
+        self._below = joint if several else None
+        self._subscriptions: dict[Quantity, DrainedSubscription] = {}
         self._zoom = self._advertise(contract.ZOOM_SPECTRUM)
         self._rms = self._advertise(contract.RMS_CURVE)
         self.joint = joint
@@ -50,7 +50,7 @@ class JointChannel:
     def _advertise(self, topic: str) -> LifecyclePublisher:
         qos = QoSProfile(depth=10)
         publisher: LifecyclePublisher = self._node.create_lifecycle_publisher(
-            Float64MultiArray, f"{self._prefix}{topic}", qos
+            Float64MultiArray, topic if self._below is None else f"{self._below}/{topic}", qos
         )
         return publisher
 
@@ -60,26 +60,22 @@ class JointChannel:
         return self.watch.settings
 
     @property
-    def _source(self) -> Source | None:
-        source = VIBRATION_SOURCES.get(self.settings.input.source)
-        return None if source is None else Source(f"{self._prefix}{source.topic}", source.type)
-
-    @property
     def topics(self) -> list[str]:
-        """Topic that the joint alone listens to; none while closed or without a sensor."""
-        return [] if self._vibration is None else [self._vibration.topic]
+        """Topics that the joint alone listens to; none while closed or without a sensor."""
+        return [subscription.topic for subscription in self._subscriptions.values()]
 
     def open(self, now: int) -> None:
         """Subscribe; silence counts from `now` [ns]."""
         self._warn_of_short_queue()
-        source = self._source
-        if source is not None:
-            self._vibration = DrainedSubscription(
-                self._node,
-                source,
-                depth=queue_depth_of(self.settings),
-                reliability=self.settings.input.reliability,
-            )
+        for quantity, source in self.settings.sources.items():
+            if quantity is not Quantity.MOTION:
+                self._subscriptions[quantity] = DrainedSubscription(
+                    self._node,
+                    source.name_below(self._below),
+                    source.type,
+                    depth=queue_depth_of(self.settings),
+                    reliability=self.settings.input.reliability,
+                )
         self.watch.wake(now)
 
     def _warn_of_short_queue(self) -> None:
@@ -94,9 +90,9 @@ class JointChannel:
 
     def close(self) -> None:
         """Leave the topics."""
-        if self._vibration is not None:
-            self._vibration.close()
-            self._vibration = None
+        for subscription in self._subscriptions.values():
+            subscription.close()
+        self._subscriptions = {}
 
     def destroy(self) -> None:
         """Take back what is advertised."""
@@ -105,8 +101,9 @@ class JointChannel:
 
     def feed(self, motion: Sequence[bytes], now: int, explain_motion: Explain) -> None:
         """Hand the joint's new messages to its watch; publish the curves where that led to a new assessment."""
-        vibration = self._vibration.drain() if self._vibration is not None else []
-        if self.watch.feed(vibration, motion, now, self._explain(explain_motion)):
+        messages = {Quantity.MOTION: motion}
+        messages |= {quantity: subscription.drain() for quantity, subscription in self._subscriptions.items()}
+        if self.watch.feed(messages, now, self._explain(explain_motion)):
             self._publish_curves()
 
     def check(self, now: int, explain_motion: Explain) -> None:
@@ -118,10 +115,9 @@ class JointChannel:
         self.watch.change_limits(settings)
 
     def _explain(self, explain_motion: Explain) -> Explain:
-        def explain(name: str) -> str:
-            if name == VIBRATION and self._vibration is not None:
-                return self._vibration.explain_silence()
-            return explain_motion(name)
+        def explain(quantity: Quantity) -> str:
+            own = self._subscriptions.get(quantity)
+            return explain_motion(quantity) if own is None else own.explain_silence()
 
         return explain
 

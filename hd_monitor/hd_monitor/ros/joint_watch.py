@@ -1,7 +1,7 @@
 """One joint as the node sees it: its monitor, what it was last told, and what became of that. Knows no rclpy."""
 
 import traceback
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -16,12 +16,10 @@ from ..errors import HdMonitorError
 from ..monitor import Monitor
 from ..orders.zoom import ZoomSpectrum
 from ..settings import JointSettings
+from ..sources import Quantity
 
-VIBRATION = "vibration"
-MOTION = "motion"
-
-Explain = Callable[[str], str]
-"""Says of an input (`VIBRATION` or `MOTION`) why nothing comes, as far as the ROS graph tells."""
+Explain = Callable[[Quantity], str]
+"""Says of an input why nothing comes, as far as the ROS graph tells."""
 
 
 @dataclass(slots=True)
@@ -38,23 +36,23 @@ class _Witness:
 
     def __init__(self, monitor: Monitor) -> None:
         self._monitor = monitor
-        self.stamps: dict[str, int] = {}
+        self.stamps: dict[Quantity, int] = {}
 
     def add_vibration(self, stamps: IntArray, values: FloatArray) -> None:
         """Pass on and note."""
-        self.stamps[VIBRATION] = int(stamps[-1])
+        self.stamps[Quantity.VIBRATION] = int(stamps[-1])
         self._monitor.add_vibration(stamps, values)
 
     def add_block(self, block: Block) -> None:
         """Pass on and note."""
-        self.stamps[VIBRATION] = block.stamp
+        self.stamps[Quantity.VIBRATION] = block.stamp
         self._monitor.add_block(block)
 
     def add_motion(self, stamps: IntArray, position: FloatArray, velocity: FloatArray, effort: FloatArray) -> None:
         """Pass on and note those that say where the joint is."""
         known = np.flatnonzero(np.isfinite(position))
         if known.size:
-            self.stamps[MOTION] = int(stamps[known[-1]])
+            self.stamps[Quantity.MOTION] = int(stamps[known[-1]])
         self._monitor.add_motion(stamps, position, velocity, effort)
 
     def reject(self, reason: str) -> None:
@@ -87,7 +85,6 @@ class JointWatch:
         self.settings = settings
         self.errors = 0
         self.last_error = ""
-        self._inputs_used = (MOTION,) if settings.sensorless else (VIBRATION, MOTION)
         self._timeout = round(settings.input.timeout * NANOSECONDS)
         self._assessed = False
         self._start()
@@ -105,26 +102,26 @@ class JointWatch:
 
     def wake(self, now: int) -> None:
         """Count silence from `now` [ns] on: the node has only just begun to listen."""
-        self._heard = {name: _Heard(now, now, self._witness.stamps.get(name)) for name in self._inputs_used}
+        self._heard = {name: _Heard(now, now, self._witness.stamps.get(name)) for name in self.settings.sources}
 
     # What the node calls --------------------------------------------------------------------------------------------
 
-    def feed(self, vibration: Sequence[bytes], motion: Sequence[bytes], now: int, explain: Explain) -> bool:
+    def feed(self, messages: Mapping[Quantity, Sequence[bytes]], now: int, explain: Explain) -> bool:
         """Hand over serialised messages as they came; return True if that led to a new assessment.
 
         Parameters
         ----------
-        vibration, motion : sequence of bytes
+        messages : mapping of Quantity to sequence of bytes
         now : int
             The node's time [ns].
         explain : callable
             Asked where an input is lost.
         """
         try:
-            self._inputs.add_motion(motion) if motion else None
-            self._inputs.add_vibration(vibration) if vibration else None
-            self._note(VIBRATION, len(vibration), now)
-            self._note(MOTION, len(motion), now)
+            for quantity, new in messages.items():
+                if new:
+                    self._inputs.add(quantity, new)
+                    self._note(quantity, now)
             assessments = self._monitor.advance()
             for assessment in assessments:
                 self._show(self._explained(assessment, now, explain))
@@ -180,7 +177,7 @@ class JointWatch:
         self._monitor.change_limits(settings)
 
     def reset_latch(self) -> None:
-        """Let go of a latched verdict."""
+        """Release a latched verdict."""
         self._monitor.reset_latch()
 
     def reset(self) -> None:
@@ -189,22 +186,20 @@ class JointWatch:
 
     # ----------------------------------------------------------------------------------------------------------------
 
-    def _note(self, name: str, messages: int, now: int) -> None:
-        heard = self._heard.get(name)
-        if heard is None or not messages:
-            return
+    def _note(self, name: Quantity, now: int) -> None:
+        heard = self._heard[name]
         heard.arrived = now
         stamp = self._witness.stamps.get(name)
         if stamp != heard.stamp:
             heard.stamp, heard.useful = stamp, now
 
-    def _useless(self, now: int) -> list[str]:
+    def _useless(self, now: int) -> list[Quantity]:
         for heard in self._heard.values():
             if heard.arrived > now or not heard.arrived:  # the clock was set back, or has only just begun
                 heard.arrived = heard.useful = now
         return [name for name, heard in self._heard.items() if now - heard.useful >= self._timeout]
 
-    def _complain(self, name: str, now: int, explain: Explain) -> str:
+    def _complain(self, name: Quantity, now: int, explain: Explain) -> str:
         heard = self._heard[name]
         if now - heard.arrived >= self._timeout:
             return f"no {_WORDS[name]} for {(now - heard.arrived) / NANOSECONDS:.0f} s: {explain(name)}"
@@ -233,7 +228,7 @@ class JointWatch:
         verdict = replace(assessment.verdict, fault_code=code, reason=_sentence("; ".join(reasons)))
         return replace(assessment, verdict=verdict)
 
-    def _code(self, useless: list[str], now: int) -> FaultCode:
+    def _code(self, useless: list[Quantity], now: int) -> FaultCode:
         silent = any(now - self._heard[name].arrived >= self._timeout for name in useless)
         return FaultCode.INPUT_LOST if silent else FaultCode.INPUT_INVALID
 
@@ -270,7 +265,7 @@ class JointWatch:
         )
 
 
-_WORDS = {VIBRATION: "vibration signal", MOTION: "joint states"}
+_WORDS = {Quantity.VIBRATION: "vibration signal", Quantity.MOTION: "joint states"}
 
 
 def _sentence(text: str) -> str:

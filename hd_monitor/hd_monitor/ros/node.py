@@ -8,13 +8,12 @@ from rclpy.qos import QoSProfile
 from std_srvs.srv import Trigger
 
 from .. import contract
-from ..adapters import MOTION_SOURCE
 from ..diagnosis.status import Status
 from ..diagnosis.verdict import Level
 from ..errors import HdMonitorError
 from ..settings import JointSettings
+from ..sources import JOINT_STATES, Quantity
 from .joint_channel import JointChannel, queue_depth_of
-from .joint_watch import MOTION
 from .managed_node import ManagedNode, logged, run
 from .messages import diagnostic_array, diagnostic_status
 from .parameters import JointParameters
@@ -84,7 +83,8 @@ class HdMonitorNode(ManagedNode):
         reliable = all(own.input.reliability == "reliable" for own in settings)
         self._motion = DrainedSubscription(
             self,
-            MOTION_SOURCE,
+            JOINT_STATES.topic,
+            JOINT_STATES.type,
             depth=max(map(queue_depth_of, settings)),
             reliability="reliable" if reliable else "best_effort",
         )
@@ -162,8 +162,8 @@ class HdMonitorNode(ManagedNode):
         simulated = self.get_parameter("use_sim_time").value
         return int((self.get_clock() if simulated else self._steady).now().nanoseconds)
 
-    def _explain_motion(self, name: str) -> str:
-        return self._motion.explain_silence() if name == MOTION and self._motion is not None else ""
+    def _explain_motion(self, quantity: Quantity) -> str:
+        return self._motion.explain_silence() if self._motion is not None else ""
 
     def _log_transition(self, channel: JointChannel, status: Status) -> None:
         text = f"{channel.joint}: {status.message}"

@@ -12,8 +12,6 @@ from rclpy.callback_groups import CallbackGroup
 from rclpy.node import Node
 from rclpy.qos import QoSCompatibility, QoSHistoryPolicy, QoSProfile, QoSReliabilityPolicy, qos_check_compatible
 
-from ..adapters import Source
-
 RELIABILITIES = {
     "reliable": QoSReliabilityPolicy.RELIABLE,
     "best_effort": QoSReliabilityPolicy.BEST_EFFORT,
@@ -41,22 +39,24 @@ class DrainedSubscription:
     Parameters
     ----------
     node : Node
-    source : Source
-        Topic, relative to the node's namespace, and message type.
+    topic : str
+        Relative to the node's namespace.
+    kind : str
+        Message type, as ``package/Type``.
     depth : int
         Messages that may wait in the queue.
     reliability : str
         ``'reliable'`` or ``'best_effort'``.
     """
 
-    def __init__(self, node: Node, source: Source, *, depth: int, reliability: str) -> None:
+    def __init__(self, node: Node, topic: str, kind: str, *, depth: int, reliability: str) -> None:
         self._node = node
-        package, _, name = source.type.partition("/")
+        package, _, name = kind.partition("/")
         self._type = getattr(import_module(f"{package}.msg"), name)
         self._depth = depth
         self._qos = QoSProfile(history=QoSHistoryPolicy.KEEP_LAST, depth=depth, reliability=RELIABILITIES[reliability])
         self._subscription = node.create_subscription(
-            self._type, source.topic, _never, self._qos, callback_group=PolledGroup(), raw=True
+            self._type, topic, _never, self._qos, callback_group=PolledGroup(), raw=True
         )
         self._type_name = f"{package}/msg/{name}"
         self.topic: str = self._subscription.topic_name

@@ -3,14 +3,12 @@
 from .groups import AnalysisSettings, DiagnosisSettings, InputSettings, LoadSettings
 from .joint_settings import JointSettings
 from .joints import set_aside_foreign, split_joints
-from .table import INPUT_SOURCES, NODE_PARAMETERS, PARAMETERS, ROS_PARAMETERS, SENSORLESS_SOURCES
+from .table import NODE_PARAMETERS, PARAMETERS, ROS_PARAMETERS
 
 __all__ = [
-    "INPUT_SOURCES",
     "NODE_PARAMETERS",
     "PARAMETERS",
     "ROS_PARAMETERS",
-    "SENSORLESS_SOURCES",
     "AnalysisSettings",
     "DiagnosisSettings",
     "InputSettings",

@@ -4,11 +4,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Self
 
+from ..errors import ParameterError
 from ..model.parameters import Dynamics
 from ..parameter import Value, check_all, fill_group
 from ..reducer import Reducer
+from ..sources import INPUT_SOURCES, JOINT_STATES, Quantity, Source
 from .groups import AnalysisSettings, DiagnosisSettings, InputSettings, LoadSettings
-from .table import PARAMETERS, SENSORLESS_SOURCES
+from .table import PARAMETERS
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -59,6 +61,9 @@ class JointSettings:
             If the teeth or the mount are impossible.
         """
         values = check_all(PARAMETERS, given or {}, owner="a joint")
+        for name, reason in INPUT_SOURCES[str(values["input.source"])].needs:
+            if not values[name]:
+                raise ParameterError(f"{name} = 0 with input.source = {values['input.source']!r}: {reason}")
         return cls(
             values=tuple(values.items()),
             reducer=fill_group(values, "reducer", Reducer),
@@ -72,6 +77,16 @@ class JointSettings:
         )
 
     @property
+    def vibration(self) -> Source:
+        """Where the vibration signal comes from."""
+        return INPUT_SOURCES[self.input.source]
+
+    @property
     def sensorless(self) -> bool:
         """Whether the vibration signal comes from joint_states alone."""
-        return self.input.source in SENSORLESS_SOURCES
+        return self.vibration.quantity is Quantity.MOTION
+
+    @property
+    def sources(self) -> dict[Quantity, Source]:
+        """The inputs that the joint needs."""
+        return {source.quantity: source for source in (JOINT_STATES, self.vibration)}

@@ -2,9 +2,7 @@
 
 from ..parameter import Parameter
 from ..reducer import Mount
-
-INPUT_SOURCES = ("block", "accel_stamped", "imu", "joint_effort", "joint_velocity")
-SENSORLESS_SOURCES = ("joint_effort", "joint_velocity")
+from ..sources import INPUT_SOURCES
 
 PARAMETERS: tuple[Parameter, ...] = (
     Parameter(
@@ -51,7 +49,7 @@ PARAMETERS: tuple[Parameter, ...] = (
     Parameter(
         name="input.source",
         default="block",
-        choices=INPUT_SOURCES,
+        choices=tuple(INPUT_SOURCES),
         description="the vibration signal; joint_effort and joint_velocity need no sensor but joint_states",
     ),
     Parameter(

@@ -6,7 +6,9 @@ import pytest
 
 from hd_monitor.offline.errors import BagError
 from hd_monitor.offline.salvage import RawTopic
-from hd_monitor.offline.topics import JointTopics, TopicFinder
+from hd_monitor.offline.topics import TopicFinder
+from hd_monitor.settings import JointSettings
+from hd_monitor.sources import INPUT_SOURCES, Quantity, Source
 
 ARRAY, ACCEL = "std_msgs/msg/Float64MultiArray", "geometry_msgs/msg/AccelStamped"
 IMU, STATE = "sensor_msgs/msg/Imu", "sensor_msgs/msg/JointState"
@@ -25,9 +27,17 @@ def finder(
     return TopicFinder(raw, lambda name: ((labels or {}).get(name, ""),), namespace=namespace, remap=remap)
 
 
+def found(vibration: str, motion: str) -> dict[Quantity, str]:
+    return {Quantity.VIBRATION: vibration, Quantity.MOTION: motion}
+
+
+def sources_of(name: str) -> dict[Quantity, Source]:
+    return JointSettings.from_mapping({"input.source": name}).sources
+
+
 def test_plain_names() -> None:
     find = finder({f"/{BLOCK}": ARRAY, "/joint_states": STATE, "/zoom_spectrum": ARRAY})
-    assert find.joint_topics("block") == JointTopics(f"/{BLOCK}", "/joint_states")
+    assert find.joint_topics(sources_of("block")) == found(f"/{BLOCK}", "/joint_states")
 
 
 @pytest.mark.parametrize(
@@ -36,41 +46,48 @@ def test_plain_names() -> None:
 )
 def test_every_source_has_its_topic(source: str, kind: str, topic: str) -> None:
     find = finder({f"/arm/{topic}": kind, "/arm/joint_states": STATE})
-    assert find.joint_topics(source) == JointTopics(f"/arm/{topic}", "/arm/joint_states")
+    assert find.joint_topics(sources_of(source)) == {
+        Quantity.VIBRATION: f"/arm/{topic}",
+        Quantity.MOTION: "/arm/joint_states",
+    }
 
 
 def test_the_sensorless_mode_needs_joint_states_only() -> None:
-    assert finder({"/joint_states": STATE}).joint_topics("joint_effort") == JointTopics(None, "/joint_states")
+    find = finder({"/joint_states": STATE})
+    assert find.joint_topics(sources_of("joint_effort")) == {Quantity.MOTION: "/joint_states"}
 
 
 def test_several_joints_have_their_topics_below_their_names() -> None:
     find = finder({f"/elbow/{BLOCK}": ARRAY, f"/wrist/{BLOCK}": ARRAY, "/joint_states": STATE})
-    assert find.joint_topics("block", "wrist").vibration == f"/wrist/{BLOCK}"
-    assert sorted(find.prefixes("block")) == ["elbow", "wrist"]
+    assert find.joint_topics(sources_of("block"), "wrist")[Quantity.VIBRATION] == f"/wrist/{BLOCK}"
+    assert sorted(find.prefixes(INPUT_SOURCES["block"])) == ["elbow", "wrist"]
 
 
 def test_several_candidates_are_listed_and_the_root_goes_first() -> None:
     topics = {f"/left/{BLOCK}": ARRAY, f"/right/{BLOCK}": ARRAY, "/joint_states": STATE}
     with pytest.raises(BagError, match=r"/left/.*/right/.*--namespace"):
-        finder(topics).joint_topics("block")
-    assert finder(topics | {f"/{BLOCK}": ARRAY}).joint_topics("block").vibration == f"/{BLOCK}"
+        finder(topics).joint_topics(sources_of("block"))
+    assert finder(topics | {f"/{BLOCK}": ARRAY}).joint_topics(sources_of("block"))[Quantity.VIBRATION] == f"/{BLOCK}"
 
 
 def test_a_namespace_chooses() -> None:
     topics = {f"/{side}/{topic}": kind for side in "lr" for topic, kind in ((BLOCK, ARRAY), ("joint_states", STATE))}
     find = finder(topics, namespace="/r")
-    assert find.joint_topics("block") == JointTopics(f"/r/{BLOCK}", "/r/joint_states")
+    assert find.joint_topics(sources_of("block")) == {
+        Quantity.VIBRATION: f"/r/{BLOCK}",
+        Quantity.MOTION: "/r/joint_states",
+    }
     with pytest.raises(BagError, match="no /x/joint_states"):
-        finder(topics, namespace="x").joint_topics("block")
+        finder(topics, namespace="x").joint_topics(sources_of("block"))
 
 
 def test_remapping_goes_before_everything() -> None:
     find = finder(
         {f"/{BLOCK}": ARRAY, "/my/blocks": ARRAY, "/js": STATE}, remap={BLOCK: "/my/blocks", "joint_states": "js"}
     )
-    assert find.joint_topics("block") == JointTopics("/my/blocks", "/js")
+    assert find.joint_topics(sources_of("block")) == found("/my/blocks", "/js")
     with pytest.raises(BagError, match="no /nowhere"):
-        finder({"/js": STATE}, remap={"joint_states": "/nowhere"}).joint_topics("joint_effort")
+        finder({"/js": STATE}, remap={"joint_states": "/nowhere"}).joint_topics(sources_of("joint_effort"))
 
 
 def test_an_odd_name_is_found_by_its_type_or_by_its_label() -> None:
@@ -78,8 +95,8 @@ def test_an_odd_name_is_found_by_its_type_or_by_its_label() -> None:
         {"/rig/blocks": ARRAY, "/zoom": ARRAY, "/js": STATE, "/a": ACCEL},
         labels={"/rig/blocks": "torsional_acceleration", "/zoom": "bin"},
     )
-    assert find.joint_topics("block") == JointTopics("/rig/blocks", "/js")
-    assert find.joint_topics("accel_stamped").vibration == "/a"
+    assert find.joint_topics(sources_of("block")) == found("/rig/blocks", "/js")
+    assert find.joint_topics(sources_of("accel_stamped"))[Quantity.VIBRATION] == "/a"
 
 
 @pytest.mark.parametrize(
@@ -92,5 +109,5 @@ def test_an_odd_name_is_found_by_its_type_or_by_its_label() -> None:
 )
 def test_what_is_missing_is_said_with_what_is_there(topics: dict[str, str], empty: tuple[str, ...], words: str) -> None:
     with pytest.raises(BagError, match=words) as caught:
-        finder(topics, empty=empty).joint_topics("joint_effort")
+        finder(topics, empty=empty).joint_topics(sources_of("joint_effort"))
     assert "\n" not in str(caught.value)

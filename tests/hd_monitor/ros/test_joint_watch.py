@@ -6,8 +6,9 @@ from typing import Any
 import pytest
 
 from hd_monitor.monitor import Monitor
-from hd_monitor.ros.joint_watch import MOTION, VIBRATION, JointWatch
+from hd_monitor.ros.joint_watch import JointWatch
 from hd_monitor.settings import JointSettings
+from hd_monitor.sources import Quantity
 
 pytestmark = pytest.mark.ros
 
@@ -16,7 +17,7 @@ START = 5 * SECOND
 SPEED = 0.5  # rad/s of the output
 
 
-def explain(name: str) -> str:
+def explain(name: Quantity) -> str:
     return f"because of the {name}"
 
 
@@ -56,6 +57,10 @@ def accelerations(start: float, seconds: float) -> list[bytes]:
     return messages
 
 
+def inputs_of(vibration: list[bytes], motion: list[bytes]) -> dict[Quantity, list[bytes]]:
+    return {Quantity.MOTION: motion, Quantity.VIBRATION: vibration}
+
+
 def test_it_waits_before_it_complains() -> None:
     watch = watch_of(reducer__serial="A1")
     status = watch.status()
@@ -73,7 +78,7 @@ def test_good_data_is_assessed_and_the_transition_handed_out_once() -> None:
     watch = watch_of(input__source="accel_stamped")
     watch.check(START + 2 * SECOND, explain)
     assert [s.value("fault_code") for s in watch.take_transitions()] == ["HD_INPUT_LOST"]
-    assert watch.feed(accelerations(100, 2.5), joint_states(100, 2.5), START + 3 * SECOND, explain)
+    assert watch.feed(inputs_of(accelerations(100, 2.5), joint_states(100, 2.5)), START + 3 * SECOND, explain)
     assert [s.value("fault_code") for s in watch.take_transitions()] == ["HD_UNDETERMINED"]
     assert watch.take_transitions() == []
     assert float(watch.status().value("samples")) >= 500
@@ -81,7 +86,7 @@ def test_good_data_is_assessed_and_the_transition_handed_out_once() -> None:
 
 def test_a_check_between_assessments_leaves_them_alone() -> None:
     watch = watch_of(input__source="accel_stamped")
-    watch.feed(accelerations(100, 2.5), joint_states(100, 2.5), START + 3 * SECOND, explain)
+    watch.feed(inputs_of(accelerations(100, 2.5), joint_states(100, 2.5)), START + 3 * SECOND, explain)
     before = watch.present
     watch.check(START + 4 * SECOND, explain)
     watch.check(START + 4 * SECOND + 1, explain)
@@ -113,34 +118,34 @@ def test_an_error_of_the_core_is_shown_and_the_joint_starts_afresh(monkeypatch: 
         raise ZeroDivisionError("made for the test")
 
     monkeypatch.setattr(Monitor, "advance", fail)
-    assert not watch.feed(accelerations(100, 1), joint_states(100, 1), START + SECOND, explain)
+    assert not watch.feed(inputs_of(accelerations(100, 1), joint_states(100, 1)), START + SECOND, explain)
     status = watch.status()
     assert (status.level, status.value("fault_code")) == (2, "HD_INTERNAL_ERROR")
     assert "ZeroDivisionError: made for the test" in status.message
     assert "made for the test" in watch.last_error
     assert [s.value("fault_code") for s in watch.take_transitions()] == ["HD_INTERNAL_ERROR"]
     monkeypatch.setattr(Monitor, "advance", advance)
-    assert watch.feed(accelerations(101, 2.5), joint_states(101, 2.5), START + 3 * SECOND, explain)
+    assert watch.feed(inputs_of(accelerations(101, 2.5), joint_states(101, 2.5)), START + 3 * SECOND, explain)
     assert watch.status().value("fault_code") == "HD_UNDETERMINED"
     assert watch.status().value("internal errors") == "1"
 
 
 def test_new_limits_keep_the_evidence() -> None:
     watch = watch_of(input__source="accel_stamped")
-    watch.feed(accelerations(100, 2.5), joint_states(100, 2.5), START + 3 * SECOND, explain)
+    watch.feed(inputs_of(accelerations(100, 2.5), joint_states(100, 2.5)), START + 3 * SECOND, explain)
     samples = watch.status().value("samples")
     watch.change_limits(JointSettings.from_mapping({"input.source": "accel_stamped", "diagnosis.warn_index": 0.07}))
-    watch.feed(accelerations(102.5, 1), joint_states(102.5, 1), START + 4 * SECOND, explain)
+    watch.feed(inputs_of(accelerations(102.5, 1), joint_states(102.5, 1)), START + 4 * SECOND, explain)
     assert watch.status().value("warn limit (%)") == "7.000"
     assert float(watch.status().value("samples")) > float(samples)
 
 
-@pytest.mark.parametrize(("source", "inputs"), [("joint_effort", {MOTION}), ("block", {VIBRATION, MOTION})])
-def test_only_inputs_that_are_used_are_missed(source: str, inputs: set[str]) -> None:
+@pytest.mark.parametrize(("source", "inputs"), [("joint_effort", {Quantity.MOTION}), ("block", set(Quantity))])
+def test_only_inputs_that_are_used_are_missed(source: str, inputs: set[Quantity]) -> None:
     watch = watch_of(input__source=source)
-    asked: list[str] = []
+    asked: list[Quantity] = []
 
-    def note(name: str) -> str:
+    def note(name: Quantity) -> str:
         asked.append(name)
         return "silence"
 

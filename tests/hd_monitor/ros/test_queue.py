@@ -4,8 +4,6 @@ from typing import Any
 
 import pytest
 
-from hd_monitor.adapters import Source
-
 pytestmark = pytest.mark.ros
 
 
@@ -36,7 +34,7 @@ def test_the_deepest_queue_still_drops_the_oldest_message_and_not_the_newest(pee
     if depth != most_messages():
         pytest.skip("this middleware knows no limit")
     subscription = DrainedSubscription(
-        peer.node, Source("numbers", "std_msgs/Float64MultiArray"), depth=depth, reliability="reliable"
+        peer.node, "numbers", "std_msgs/Float64MultiArray", depth=depth, reliability="reliable"
     )
     publisher = peer.publisher(Float64MultiArray, "numbers")
     sent = depth + 500

@@ -4,18 +4,17 @@ from typing import Any
 
 import pytest
 
-from hd_monitor.adapters import Source
 from hd_monitor.cdr import decode_accel_stamped
 
 pytestmark = pytest.mark.ros
 
-SOURCE = Source("torsional_acceleration", "geometry_msgs/AccelStamped")
+TOPIC, KIND = "torsional_acceleration", "geometry_msgs/AccelStamped"
 
 
 def drained(peer: Any, depth: int) -> Any:
     from hd_monitor.ros.subscriptions import DrainedSubscription
 
-    return DrainedSubscription(peer.node, SOURCE, depth=depth, reliability="reliable")
+    return DrainedSubscription(peer.node, TOPIC, KIND, depth=depth, reliability="reliable")
 
 
 def publish(publisher: Any, first: int, count: int) -> None:

@@ -6,7 +6,8 @@ import pytest
 
 from hd_monitor.errors import GeometryError, ParameterError
 from hd_monitor.reducer import Mount
-from hd_monitor.settings import INPUT_SOURCES, PARAMETERS, SENSORLESS_SOURCES, JointSettings
+from hd_monitor.settings import PARAMETERS, JointSettings
+from hd_monitor.sources import INPUT_SOURCES, Quantity
 
 
 def settings(**changes):
@@ -43,8 +44,9 @@ def test_reducer_and_dynamics_are_built_from_their_groups():
 
 @pytest.mark.parametrize("source", INPUT_SOURCES)
 def test_sensorless_sources_are_those_of_joint_states(source):
-    assert settings(input__source=source).sensorless == (source in SENSORLESS_SOURCES)
-    assert source.startswith("joint_") == (source in SENSORLESS_SOURCES)
+    joint = settings(input__source=source)
+    assert joint.sensorless == source.startswith("joint_")
+    assert set(joint.sources) == ({Quantity.MOTION} if joint.sensorless else set(Quantity))
 
 
 def test_every_parameter_is_a_typed_field_of_its_group():

@@ -5,7 +5,8 @@ import math
 import pytest
 
 from hd_monitor.errors import ParameterError
-from hd_monitor.settings import INPUT_SOURCES, NODE_PARAMETERS, PARAMETERS
+from hd_monitor.settings import NODE_PARAMETERS, PARAMETERS
+from hd_monitor.sources import INPUT_SOURCES
 
 # What other files rely on: the public contract's names, with the defaults it gives.
 CONTRACT = {
@@ -47,4 +48,4 @@ def test_the_contracts_names_have_the_contracts_defaults(name, default):
 
 
 def test_the_contracts_sources():
-    assert INPUT_SOURCES == ("block", "accel_stamped", "imu", "joint_effort", "joint_velocity")
+    assert tuple(INPUT_SOURCES) == ("block", "accel_stamped", "imu", "joint_effort", "joint_velocity")

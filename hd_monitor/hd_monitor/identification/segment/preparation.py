@@ -47,7 +47,7 @@ class Preparation:
             harmonics=unknowns.harmonics,
             load_orders=unknowns.load_orders,
             natural_frequency=self._given.natural_frequency,
-            inertial=settings.input.source == "imu",
+            inertial=settings.vibration.gravity,
         )
         self.nominal_torque: float | None = None
         self.mounting = 1.0

@@ -1,0 +1,153 @@
+"""The sources of input: what each tells, its topic, its message type and its decoder.
+
+Parameters' choices, the node's subscriptions, the topics that replay looks for and the decoding follow these tables.
+"""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from . import cdr, contract
+from .arrays import FloatArray, IntArray
+from .errors import LayoutError
+
+if TYPE_CHECKING:
+    from .settings import JointSettings
+
+
+class Quantity(StrEnum):
+    """What an input tells of a joint."""
+
+    VIBRATION = "vibration"
+    MOTION = "motion"
+
+
+class Stamped(NamedTuple):
+    """Single samples of a quantity."""
+
+    stamps: IntArray
+    """Sampling instants [ns], shape (N,)."""
+    values: FloatArray
+    """θ'' [rad/s²] of a vibration; shape (N,)."""
+
+
+Decoded = Stamped | contract.Block | str
+"""Samples, a block of samples, or what is wrong with a message."""
+
+Decoder = Callable[[Sequence[bytes], "JointSettings"], Iterable[Decoded]]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Source:
+    """A topic that a joint listens to.
+
+    Attributes
+    ----------
+    quantity : Quantity
+    topic : str
+        Relative name.
+    type : str
+        ROS message type, as ``package/Type``.
+    decode : callable or None
+        Turns serialised messages into what they say, in their order; None for joint states, of which the joint has to
+        be found first.
+    needs : tuple of str
+        Parameters that must be above 0, each with what it is for.
+    gravity : bool
+        Whether the signal also holds gravity and the arm's own motion.
+    """
+
+    quantity: Quantity
+    topic: str
+    type: str
+    decode: Decoder | None = None
+    needs: tuple[tuple[str, str], ...] = ()
+    gravity: bool = False
+
+    def name_below(self, joint: str | None) -> str:
+        """Name of the topic where several joints are watched, each with its own topics below its name."""
+        shared = joint is None or self.quantity is Quantity.MOTION
+        return self.topic if shared else f"{joint}/{self.topic}"
+
+
+def _decode_blocks(messages: Sequence[bytes], settings: "JointSettings") -> Iterator[Decoded]:
+    """Yield the blocks, and what is wrong with those that are none, in the order of the messages."""
+    groups, faults = cdr.decode_multi_arrays(messages)
+    items: list[tuple[int, contract.Block | str]] = list(faults)
+    for group in groups:
+        places = group.place.tolist()
+        try:
+            blocks = contract.unpack_blocks(group.dimensions, group.data_offset, group.data)
+        except LayoutError as error:
+            items.extend((place, str(error)) for place in places)
+            continue
+        items.extend(
+            (place, str(block) if isinstance(block, LayoutError) else block)
+            for place, block in zip(places, blocks, strict=True)
+        )
+    if len(groups) > 1 or faults:
+        items.sort(key=lambda item: item[0])
+    for _, item in items:
+        yield item
+
+
+def _decode_accelerations(messages: Sequence[bytes], settings: "JointSettings") -> Iterator[Decoded]:
+    samples = cdr.decode_accel_stamped(messages)
+    return _samples(samples, samples.angular[:, 2])
+
+
+def _decode_imu(messages: Sequence[bytes], settings: "JointSettings") -> Iterator[Decoded]:
+    samples = cdr.decode_imu(messages)
+    given = settings.input
+    return _samples(samples, _along(given.axis, samples.linear) * (1.0 / given.sensor_radius))
+
+
+def _along(axis: str, vectors: FloatArray) -> FloatArray:
+    """Components of vectors, shape (N, 3), along an axis as the parameters name it, ``-z`` say; shape (N,)."""
+    component = vectors[:, "xyz".index(axis[-1])]
+    return -component if axis.startswith("-") else component
+
+
+def _samples(samples: cdr.Samples, values: FloatArray) -> Iterator[Decoded]:
+    yield from samples.faults
+    if samples.stamps.size:
+        yield Stamped(samples.stamps, np.ascontiguousarray(values))
+
+
+JOINT_STATES = Source(quantity=Quantity.MOTION, topic=contract.JOINT_STATES, type="sensor_msgs/JointState")
+"""The motion that every mode refers to."""
+
+INPUT_SOURCES: Mapping[str, Source] = {
+    "block": Source(
+        quantity=Quantity.VIBRATION,
+        topic=contract.TORSIONAL_ACCELERATION_BLOCK,
+        type="std_msgs/Float64MultiArray",
+        decode=_decode_blocks,
+    ),
+    "accel_stamped": Source(
+        quantity=Quantity.VIBRATION,
+        topic=contract.TORSIONAL_ACCELERATION,
+        type="geometry_msgs/AccelStamped",
+        decode=_decode_accelerations,
+    ),
+    "imu": Source(
+        quantity=Quantity.VIBRATION,
+        topic=contract.IMU,
+        type="sensor_msgs/Imu",
+        decode=_decode_imu,
+        needs=(
+            (
+                "input.sensor_radius",
+                "a tangential acceleration becomes an angular one by dividing by the radius; give the distance of the "
+                "IMU from the joint's axis",
+            ),
+        ),
+        gravity=True,
+    ),
+    "joint_effort": JOINT_STATES,
+    "joint_velocity": JOINT_STATES,
+}
+"""The words of ``input.source``; where joint states carry the vibration signal too, no sensor is needed."""
