@@ -52,7 +52,7 @@ class SpeedProgramme:
     Up to 600 rpm in one second, held for one:
 
     >>> programme = SpeedProgramme(times=[0.0, 1.0, 2.0], speeds=[0.0, 600.0, 600.0], cycles=1)
-    >>> (programme.angle(2.0) / (2 * np.pi)).round(12)
+    >>> round(float(programme.angle(2.0)) / (2 * np.pi), 12)
     15.0
     """
 

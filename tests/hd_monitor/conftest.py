@@ -1,5 +1,3 @@
-import importlib.util
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -46,16 +44,3 @@ def ur10e(recording):
         )
 
     return joint
-
-
-@pytest.fixture(scope="session")
-def joints():
-    """The random joints with a known truth that the study of the sensorless mode uses."""
-    file = Path(__file__).parents[1] / "benchmarks" / "sensorless_joint.py"
-    spec = importlib.util.spec_from_file_location("sensorless_joint", file)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module
-    spec.loader.exec_module(module)
-    return module

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.benchmarks.estimator_cases import Case, simulate
+from tests.simulated.cases import Case, simulate
 
 from hd_monitor.diagnosis.limitations import describe_limitation
 from hd_monitor.identification.identifier import Identifier

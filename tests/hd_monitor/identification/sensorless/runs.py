@@ -1,7 +1,4 @@
-"""Runs of the sensorless identification, and what its probabilities must stand up to."""
-
-import numpy as np
-from scipy import stats
+"""Runs of the sensorless identification and the verdicts that follow."""
 
 from hd_monitor.acquisition.record import JointSamples
 from hd_monitor.diagnosis import Judge
@@ -32,9 +29,3 @@ def named(identifier, parameters):
     for _ in range(3):
         verdict = judge.judge(identifier.estimate(), "nothing yet")
     return verdict.component
-
-
-def assert_no_more_than_chance(chances):
-    """Probabilities are what they say: as many below each level as an honest test gives in 999 runs of 1000."""
-    for level in (0.1, 0.01, 0.001):
-        assert np.count_nonzero(np.array(chances) < level) <= stats.binom.ppf(0.999, len(chances), level)

@@ -5,7 +5,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.hd_monitor.identification.sensorless.runs import (
-    assert_no_more_than_chance,
     identify,
     named,
     part,
@@ -16,7 +15,6 @@ from hd_monitor.acquisition.record import JointSamples
 from hd_monitor.diagnosis import Component
 from hd_monitor.diagnosis.limitations import describe_limitation
 from hd_monitor.identification.sensorless.identifier import SensorlessIdentifier
-from hd_monitor.reducer import LinePair
 
 
 def swinging(cs=0.3, fs=0.0, noise=0.1, seconds=60.0, rate=100.0, seed=1, teeth=(160, 162)):
@@ -250,35 +248,3 @@ def test_teeth_near_the_right_ones_name_no_part(given):
     assert "200/202 teeth" in first
     right = settings_of(reducer__flexspline_teeth=200, reducer__circular_spline_teeth=202)
     assert identify(samples, right).estimate().blockers == ()
-
-
-# Random joints -------------------------------------------------------------------------------------------------------
-
-
-@pytest.mark.slow
-def test_invents_no_line_on_random_joints(joints):
-    rng = np.random.default_rng(424)
-    chances, names = [], []
-    for _ in range(60):
-        case = joints.random_joint(rng, LinePair(0.0, 0.0), rate=float(rng.choice([100.0, 125.0, 250.0])))
-        identifier = identify(joints.simulate_joint(case), case.settings())
-        chances += [chance for side in identifier.directions for chance in side.chance]
-        names.append(named(identifier, case.settings()))
-    assert set(names) == {Component.UNDETERMINED}
-    assert len(chances) >= 200
-    assert_no_more_than_chance(chances)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("lines", "right"),
-    [((1.0, 0.4), Component.CIRCULAR_SPLINE), ((0.4, 1.0), Component.FLEXSPLINE), ((0.6, 0.6), Component.BOTH)],
-)
-def test_never_names_the_wrong_spline_on_random_joints(joints, lines, right):
-    rng = np.random.default_rng([31, *(round(10 * size) for size in lines)])
-    names = []
-    for _ in range(30):
-        case = joints.random_joint(rng, LinePair(*lines), rate=float(rng.choice([100.0, 125.0, 250.0])))
-        names.append(named(identify(joints.simulate_joint(case), case.settings()), case.settings()))
-    assert set(names) <= {right, Component.UNDETERMINED}
-    assert names.count(right) >= (27 if right is not Component.BOTH else 3)

@@ -1,6 +1,6 @@
 """How often does the monitor accuse a sound reducer? Whole chain, simulator to verdict, on random sound units.
 
-    python tests/benchmarks/false_alarms.py [--runs 120] [--seconds 40] [--seed 2024]
+    python tests/studies/false_alarms.py [--runs 120] [--seconds 40] [--seed 2024]
 
 Every run is another unit: random tooth numbers, natural frequency and damping, stiffness indexes of at most 60 % of the
 warn limit, random mean torque, gravity of an eccentric load that no effort tells, load fluctuation, noise, motion
@@ -85,6 +85,11 @@ def verdicts(case: tuple[int, float]) -> Counter[str]:
     return counted
 
 
+def alarms_in(counted: Counter[str]) -> int:
+    """Count the verdicts that accuse a spline."""
+    return sum(counted[name] for name in ("flexspline", "circular_spline", "both"))
+
+
 def main() -> int:
     """Run the study and print its figures; status 1 if more than 1 verdict in 1000 is a false alarm."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -100,14 +105,13 @@ def main() -> int:
     with ProcessPoolExecutor(options.jobs) as pool:
         for number, (case, counted) in enumerate(zip(cases, pool.map(verdicts, cases), strict=True), start=1):
             total += counted
-            alarms = sum(counted[name] for name in ("flexspline", "circular_spline", "both"))
+            alarms = alarms_in(counted)
             bad_runs += alarms > 0
             if options.verbose and alarms:
                 print(f"\nseed {case[0]}: {dict(counted)} {random_unit(*case)[0]}")
             print(f"\r{number}/{options.runs} units, {bad_runs} accused", end="", file=sys.stderr, flush=True)
     print(file=sys.stderr)
-    alarms = sum(total[name] for name in ("flexspline", "circular_spline", "both"))
-    count = sum(total.values())
+    alarms, count = alarms_in(total), total.total()
     upper = beta.ppf(0.95, bad_runs + 1, options.runs - bad_runs)
     print(f"{options.runs} sound units, {count} verdicts: {dict(total)}")
     print(f"false alarms: {alarms} of {count} verdicts ({1000.0 * alarms / count:.2f} per 1000)")

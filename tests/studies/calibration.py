@@ -1,12 +1,12 @@
 """Do the standard deviations mean what they say, and is the estimate as good as any can be?
 
-    python tests/benchmarks/estimator_calibration.py [--runs 500] [--seed 777000] [--jobs 2]
+    python tests/studies/calibration.py [--runs 500] [--seed 777000] [--jobs 2]
 
-*Coverage*: on random cases (see estimator_cases.py; white noise, no sensor faults), how often do the 95 % intervals,
-index ± 1.96 standard deviations, hold the truth? Near 0 an interval is meant to hold more.
+*Coverage*: on random cases (see tests/simulated/cases.py; white noise, no sensor faults), how often do the 95 %
+intervals, index ± 1.96 standard deviations, hold the truth? Near 0 an interval is meant to hold more.
 
 *Efficiency*: Table 1 at a constant speed with separable lines, over many noises: the variance of the estimates over
-the Cramér-Rao bound for all that is estimated along (see estimator_bound.py), for each index and for all β of each
+the Cramér-Rao bound for all that is estimated along (see cramer_rao.py), for each index and for all β of each
 spline, and the variance that the estimator reports over the same bound. Beside the plain ratio stands one with less
 chance in it: with the noise known, so is the error of the efficient estimate, whose variance *is* the bound; only
 what the estimate adds to that error has to be measured. Twice the standard error follows every ±.
@@ -25,6 +25,7 @@ import numpy as np
 from scipy.stats import binom
 
 from hd_monitor.acquisition.record import Record
+from hd_monitor.arrays import FloatArray
 from hd_monitor.identification.identifier import Identifier
 from hd_monitor.identification.result import Identification
 from hd_monitor.model import table_1
@@ -33,18 +34,15 @@ from hd_monitor.settings import JointSettings
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
-from tests.benchmarks import estimator_bound
-from tests.benchmarks.estimator_bound import Bound, bound
-from tests.benchmarks.estimator_cases import Case, random_case, simulate
-
-from hd_monitor.arrays import FloatArray
+from tests.simulated.cases import Case, random_case, simulate
+from tests.studies import cramer_rao
 
 CLEAN = {"colour": "white", "spikes": 0.0, "lost": 0.0}
 SPEED = 1000.0  # rpm: lines at 33, 67 and 100 Hz, off the natural frequency of 55 Hz; two output turns in 10 s
 RATE, DURATION = 1000.0, 10.0
 NOISE = 0.5  # rad/s²
-FITTED = np.ones(estimator_bound.SIZE, dtype=np.bool_)
-FITTED[[estimator_bound.FREQUENCY, estimator_bound.DAMPING]] = False  # at one speed they are taken as given
+FITTED = np.ones(cramer_rao.SIZE, dtype=np.bool_)
+FITTED[[cramer_rao.FREQUENCY, cramer_rao.DAMPING]] = False  # at one speed they are taken as given
 FITTED.flags.writeable = False
 SPLINES = tuple(zip(LinePair._fields, (slice(0, 6), slice(6, 12)), strict=True))
 WITHIN = 1.96
@@ -139,13 +137,13 @@ def steady_records() -> tuple[Case, tuple[Record, ...]]:
     return case, tuple(simulate(case))
 
 
-def steady_bound() -> Bound:
+def steady_bound() -> cramer_rao.Bound:
     """Bound for the steady case: all β, loads once and twice a turn, and the state at the start are unknown."""
     case, records = steady_records()
     angle = np.concatenate([record.angle for record in records])
     times = np.arange(angle.size) / RATE
     line = np.polyfit(times, angle, 1)
-    return bound(case.model, line, samples=angle.size, rate=RATE, noise=NOISE, unknown=FITTED, informed=True)
+    return cramer_rao.bound(case.model, line, samples=angle.size, rate=RATE, noise=NOISE, unknown=FITTED, informed=True)
 
 
 def steady_noise(number: int, seed: int) -> FloatArray:

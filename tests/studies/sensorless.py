@@ -1,6 +1,6 @@
 """Study of the sensorless mode: what it finds, misses and invents, on random joints with a known truth.
 
-    python -m tests.benchmarks.sensorless_study [--cases 100] [--seed 2024] [--recordings DIR]
+    python tests/studies/sensorless.py [--cases 100] [--seed 2024] [--recordings DIR]
 
 prints the tables that the documentation quotes. With ``--recordings`` (a folder of UR10e joint states, one CSV a run:
 time, six positions, six velocities, six currents …) also what a real arm shows, and what is found where no line is.
@@ -8,13 +8,13 @@ time, six positions, six velocities, six currents …) also what a real arm show
 
 import argparse
 import math
+import sys
 from collections import Counter
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
 import numpy as np
 from scipy import stats
-from tests.benchmarks.sensorless_joint import random_joint, simulate_joint
 
 from hd_monitor.acquisition.record import JointSamples
 from hd_monitor.diagnosis import Component, Judge
@@ -23,6 +23,10 @@ from hd_monitor.identification.sensorless.identifier import SensorlessIdentifier
 from hd_monitor.identification.teeth.ranking import rank_tooth_pairs
 from hd_monitor.reducer import LinePair
 from hd_monitor.settings import JointSettings
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+
+from tests.simulated.joints import random_joint, simulate_joint
 
 UR10E = {
     "reducer.flexspline_teeth": 200,
@@ -56,18 +60,7 @@ def study_names(cases: int, seed: int) -> list[str]:
         "they are equal, and undetermined where there is none.",
         "circular spline  flexspline |   right   wrong  undetermined",
     ]
-    truths = [
-        (0.0, 0.0),
-        (0.3, 0.3),
-        (1.0, 1.0),
-        (0.3, 0.1),
-        (0.1, 0.3),
-        (1.0, 0.3),
-        (0.3, 1.0),
-        (1.0, 0.7),
-        (0.7, 1.0),
-    ]
-    for cs, fs in truths:
+    for cs, fs in TRUTHS:
         rng = np.random.default_rng([seed, round(10 * cs), round(10 * fs)])
         counts: Counter[Component] = Counter()
         for _ in range(cases):

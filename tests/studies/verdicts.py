@@ -1,9 +1,9 @@
 """Which rule names the right part? Three rules on random cases, each a table of truth against verdict.
 
-    python tests/benchmarks/estimator_study.py [--cases 300] [--seed 2021] [--jobs 2] [--verbose]
+    python tests/studies/verdicts.py [--cases 300] [--seed 2021] [--jobs 2] [--verbose]
 
-Every case is another reducer with another defect, motion, load, noise and sensor fault (see estimator_cases.py): the
-confounders of the field. The rules:
+Every case is another reducer with another defect, motion, load, noise and sensor fault (see tests/simulated/cases.py):
+the confounders of the field. The rules:
 
 * ``higher peak``: the paper's, the higher of the two peaks in the zoom spectrum around the strongest pair;
 * ``least squares``: line amplitudes by known-order regression, divided by the resonance and the static wind-up, and the
@@ -36,7 +36,7 @@ from hd_monitor.reducer import LinePair
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
-from tests.benchmarks.estimator_cases import BOTH_RATIO, WARN, Case, random_case, simulate
+from tests.simulated.cases import BOTH_RATIO, WARN, Case, random_case, simulate
 
 RULES = ("higher peak", "least squares", "hd_monitor")
 
