@@ -12,7 +12,8 @@ from ..robust import PER_MEDIAN, robust_std
 Places = npt.NDArray[np.intp]
 
 _SPIKE = 8.0  # robust standard deviations of the curvature; a sine never exceeds 2
-_AROUND = 12  # samples on either side of a spike that tell the level there
+_AROUND = 12  # samples on either side of a spike that show the level there
+_LONGEST_SPIKE = 3  # samples in a row; more are a disturbance, not a spike
 _STUCK_RUN = 32  # equal samples in a row: no sensor at rest is that quiet
 _CLIPPED_RUN = 3  # equal samples in a row at the extreme: a flat top
 _NOWHERE = np.empty(0, dtype=np.intp)
@@ -77,9 +78,14 @@ def _flat_runs(values: FloatArray, equal: BoolArray, *, tops: bool) -> tuple[Pla
     return np.flatnonzero(flat), np.flatnonzero(stuck)
 
 
+def _curvature(values: FloatArray) -> FloatArray:
+    """Magnitude of the deviation of each inner sample from the mean of its neighbours, shape (N - 2,)."""
+    return np.abs(values[1:-1] - 0.5 * (values[:-2] + values[2:]))
+
+
 def _spikes(values: FloatArray) -> Places:
-    """Indexes of single samples that stick out of their neighbours."""
-    curvature = np.abs(values[1:-1] - 0.5 * (values[:-2] + values[2:]))
+    """Indexes of samples, up to `_LONGEST_SPIKE` in a row, that stick out of their neighbours."""
+    curvature = _curvature(values)
     known = curvature
     largest = float(curvature.max(initial=0.0))
     if math.isnan(largest):
@@ -87,23 +93,45 @@ def _spikes(values: FloatArray) -> Places:
         largest = float(known.max(initial=0.0))
     if known.size < 16:
         return _NOWHERE
-    # Where most are not far below the largest, the median is not either: counting them is quicker than the median
+    # Where most are not far below the largest, neither is the median: counting them is quicker than the median
     if 2 * int(np.count_nonzero(known >= largest / (_SPIKE * PER_MEDIAN))) > known.size + 1:
         return _NOWHERE
     limit = _SPIKE * robust_std(known)
-    if limit == 0.0 or not (known > limit).any():
+    if limit == 0.0 or largest <= limit:
         return _NOWHERE
-    # the neighbours of a spike bend too, half as much: only the local maximum is the spike
-    padded = np.concatenate([[0.0, 0.0], np.nan_to_num(curvature), [0.0, 0.0]])
-    peak = (padded[2:-2] >= padded[1:-3]) & (padded[2:-2] >= padded[3:-1]) & (padded[2:-2] > limit)
-    candidates = np.flatnonzero(peak)
-    return np.asarray([i + 1 for i in candidates.tolist() if _sticks_out(curvature, i)], dtype=np.intp)
+    # The neighbours of a spike bend too, half as much: only local maxima count
+    padded = np.concatenate([[0.0], np.nan_to_num(curvature), [0.0]])
+    middle = padded[1:-1]
+    peaks = np.flatnonzero((middle >= padded[:-2]) & (middle >= padded[2:]) & (middle > limit))
+    calm, found = values.copy(), [_NOWHERE]
+    for place in peaks[np.argsort(-middle[peaks], kind="stable")].tolist():
+        while (spike := _spike_near(calm, place + 1, limit)).size:
+            found.append(spike)
+    return np.unique(np.concatenate(found))
 
 
-def _sticks_out(curvature: FloatArray, place: int) -> bool:
-    """Whether the curvature at a place exceeds that around it as well: a level that rises, at a resonance, does not."""
-    around = np.concatenate(
-        [curvature[max(0, place - _AROUND) : max(0, place - 1)], curvature[place + 2 : place + 1 + _AROUND]]
-    )
-    around = around[np.isfinite(around)]
-    return not around.size or bool(curvature[place] > _SPIKE * robust_std(around))
+def _spike_near(values: FloatArray, place: int, limit: float) -> Places:
+    """Find a spike near a place and replace it by the line between its neighbours.
+
+    The curvature there must exceed `limit`, and that around it as well: a level that rises, at a resonance, does not.
+    """
+    low, high = max(0, place - 2 * _AROUND), min(values.size, place + 2 * _AROUND + 1)
+    window = values[low:high]
+    curvature = np.nan_to_num(_curvature(window))
+    near = slice(max(0, place - low - 1 - _LONGEST_SPIKE), place - low + _LONGEST_SPIKE)
+    top = near.start + int(np.argmax(curvature[near]))
+    level = np.concatenate([curvature[max(0, top - _AROUND) : max(0, top - 2)], curvature[top + 3 : top + _AROUND + 1]])
+    if curvature[top] <= max(limit, _SPIKE * robust_std(level) if level.size else 0.0):
+        return _NOWHERE
+    index, best, bridged, most = np.arange(window.size), _NOWHERE, window, 0.0
+    for count in range(1, _LONGEST_SPIKE + 1):
+        for first in range(top + 1 - count, top + 3):
+            chosen = (index >= first) & (index < first + count)
+            kept = ~chosen & np.isfinite(window)
+            trial = np.where(chosen, np.interp(index, index[kept], window[kept]), window)
+            # Squares, so that another spike nearby counts alike in every trial; a longer spike must be worth its length
+            gain = float((curvature**2 - np.nan_to_num(_curvature(trial)) ** 2).sum()) / math.sqrt(count)
+            if gain > most:
+                best, bridged, most = low + index[chosen], trial, gain
+    values[low:high] = bridged
+    return best

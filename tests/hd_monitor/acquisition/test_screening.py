@@ -1,13 +1,35 @@
 """Bad samples are found, counted and left out; good vibration passes untouched."""
 
+import math
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from hd_monitor.acquisition.screening import screen
+from hd_monitor.model import table_1
+from hd_monitor.model.simulation import simulate
 
 TIMES = np.arange(1000) * 1e-3
+
+
+@pytest.fixture(scope="module", params=[(2000.0, 0.4, 0.15), (3000.0, 4.0, 1.9)], ids=["fast reversals", "slow ramps"])
+def strokes(request: pytest.FixtureRequest) -> np.ndarray:
+    """8 s of vibration [rad/s²] at 1 kHz from strokes through the resonance: speed [rpm], length and ramp [s]."""
+    speed, length, ramp = request.param
+    grid = np.linspace(0.0, 8.0, 80_001)
+    corners = [0.0, ramp, length - ramp, length, length + ramp, 2.0 * length - ramp, 2.0 * length]
+    turning = np.interp(grid % (2.0 * length), corners, [0, 1, 1, 0, -1, -1, 0]) * speed * math.tau / 60.0 / 80.0
+    angle = np.cumsum(turning) * grid[1]
+    response = simulate(table_1(), lambda times: np.interp(times, grid, angle), duration=8.0, rate=8000.0)
+    return response.acceleration[::8] + np.random.default_rng(3).normal(0.0, 0.2, 8000)
+
+
+def left_out(vibration: np.ndarray) -> list[int]:
+    """Places of the samples left out, each second screened by itself as a monitor does."""
+    seconds = [screen(part).values for part in np.split(vibration, 8)]
+    return np.flatnonzero(np.isnan(np.concatenate(seconds))).tolist()
 
 
 @given(
@@ -34,9 +56,33 @@ def test_spikes_are_found_and_nothing_else(places: set[int], sign: float) -> Non
 
 
 @given(size=st.floats(5.0, 1000.0), time_constant=st.floats(0.02, 0.3))
-def test_a_level_that_grows_is_no_spike(size: float, time_constant: float) -> None:
+def test_a_growing_level_is_not_a_spike(size: float, time_constant: float) -> None:
     level = 1.0 + size / (1.0 + np.exp(-(TIMES - 0.6) / time_constant))  # a resonance passed on the way
     assert screen(level * np.sin(2 * np.pi * 56.0 * TIMES)).spikes == 0
+
+
+def test_strokes_through_the_resonance_pass_untouched(strokes: np.ndarray) -> None:
+    assert left_out(strokes) == []
+
+
+@pytest.mark.parametrize("size", [3.0, 10.0, 30.0])
+def test_of_strokes_the_spikes_are_left_out_and_nothing_else(strokes: np.ndarray, size: float) -> None:
+    rng = np.random.default_rng(4)
+    places = np.sort(rng.choice(strokes.size, 25, replace=False))
+    spiked = strokes.copy()
+    spiked[places] += size * strokes.std() * rng.choice([-1.0, 1.0], 25)
+    assert left_out(spiked) == places.tolist()
+
+
+@pytest.mark.parametrize(
+    ("place", "shape"),
+    [(0, [1.0]), (1, [1.0]), (999, [1.0]), (0, [1.0, 1.0]), (500, [1.0, 1.0]), (500, [1.0, -1.0]), (500, [1.0] * 3)],
+)
+def test_spikes_in_a_row_and_at_the_ends_are_left_out(strokes: np.ndarray, place: int, shape: list[float]) -> None:
+    places = 4000 + np.arange(place, place + len(shape))
+    spiked = strokes.copy()
+    spiked[places] += 10.0 * strokes.std() * np.array(shape)
+    assert left_out(spiked) == places.tolist()
 
 
 def test_not_finite_values_are_left_out() -> None:
