@@ -5,6 +5,8 @@
 Ratios are to CPU time, so that whatever else the machine does counts little; replay keeps one core busy. Each is the
 best of at least three runs and eight seconds: a machine that shares its processor is seldom at its full speed.
 "read" is what reading the file and decoding its messages alone would allow; "replay" is everything up to the verdict.
+"bulk" is the time that a library takes to give all messages one by one (mcap for MCAP, rosbags for SQLite) over the
+time that we take to give them in bulk, nothing decoded.
 Wanted: blocks at least 1000 times, single samples at 1 kHz at least 100 times, memory flat in the recording's length.
 """
 
@@ -21,7 +23,8 @@ from hd_monitor.process import set_up_process
 
 set_up_process()  # as every command does, before numpy comes
 
-from rosbags.rosbag2 import StoragePlugin, Writer
+from mcap.reader import make_reader
+from rosbags.rosbag2 import Reader, StoragePlugin, Writer
 
 from hd_monitor.adapters import Inputs
 from hd_monitor.offline.bag import Bag
@@ -89,6 +92,30 @@ def time_reading(path: Path) -> float:
     return time.process_time() - start
 
 
+def time_bulk(path: Path) -> float:
+    """CPU seconds that giving all messages in bulk takes."""
+    start = time.process_time()
+    with Bag(path) as bag:
+        for _ in bag.windows([topic.name for topic in bag.topics]):
+            pass
+    return time.process_time() - start
+
+
+def time_library(path: Path) -> float:
+    """CPU seconds that a library takes to give all messages one by one."""
+    start = time.process_time()
+    storage = rec.storage_file(path)
+    if storage.suffix == ".mcap":
+        with storage.open("rb") as file:
+            for _ in make_reader(file).iter_messages():
+                pass
+    else:
+        with Reader(path) as reader:
+            for _ in reader.messages():
+                pass
+    return time.process_time() - start
+
+
 def time_replay(path: Path) -> float:
     """CPU seconds that the replay takes up to the verdict."""
     start = time.process_time()
@@ -117,14 +144,16 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seconds", type=float, default=600.0, help="length of the recordings [s]")
     seconds = parser.parse_args().seconds
-    print(f"{'recording':34}{'read':>12}{'replay':>12}{'wanted':>12}")
+    print(f"{'recording':34}{'read':>12}{'replay':>12}{'wanted':>12}{'bulk':>10}")
     with tempfile.TemporaryDirectory() as folder:
         for publish, wanted in (("block", 1000), ("samples", 100)):
             for storage in (StoragePlugin.MCAP, StoragePlugin.SQLITE3):
                 name = f"{publish} at 1 kHz, {storage.name.lower()}, {seconds:.0f} s"
                 path = record(Path(folder) / f"{publish}_{storage.name}", seconds, publish, storage)
                 read, whole = best_of(time_reading, path), best_of(time_replay, path)
-                print(f"{name:34}{seconds / read:>10.0f} ×{seconds / whole:>10.0f} ×{wanted:>10} ×", flush=True)
+                bulk = best_of(time_library, path) / best_of(time_bulk, path)
+                ratios = f"{seconds / read:>10.0f} ×{seconds / whole:>10.0f} ×{wanted:>10} ×{bulk:>8.1f} ×"
+                print(f"{name:34}{ratios}", flush=True)
         # From 150 s on: a monitor's evidence reaches back two minutes and fills up first.
         grown = []
         for length in (150.0, 600.0):

@@ -3,20 +3,20 @@
 import re
 import tempfile
 from collections import Counter
-from collections.abc import Collection, Iterator
-from contextlib import ExitStack, suppress
-from itertools import starmap
-from pathlib import Path
+from collections.abc import Collection, Iterable, Iterator
+from contextlib import ExitStack
+from pathlib import Path, PurePath
 from types import TracebackType
 from typing import Self
 
-from rosbags.rosbag2 import Reader
+import yaml
 
-from .batches import Batch, in_batches
-from .compression import MAGIC, decompress, decompress_file
+from .batches import Batch, RawMessage, RawTopic, in_batches
+from .compression import MAGIC, decompress_file, decompress_leniently
 from .errors import BagError, one_line
-from .salvage import DamagedMcap, DamagedSqlite, RawMessage, RawTopic, restore_length
-from .whole import read_whole
+from .salvage import Walk, restore_length, walk_through
+from .sqlite import WholeSqlite, has_unsaved_rows
+from .whole_mcap import WholeMcap
 from .windows import Window, windows
 
 __all__ = ["Bag", "Window"]
@@ -57,8 +57,7 @@ class Bag:
         self.start: int | None = None
         self.end: int | None = None
         self._stack = ExitStack()
-        self._reader: Reader | None = None
-        self._pieces: list[DamagedMcap | DamagedSqlite] = []
+        self._parts: list[tuple[Path, WholeMcap | WholeSqlite | Walk]] = []
         try:
             self.topics = self._open()
         except BaseException:
@@ -84,7 +83,7 @@ class Bag:
         Where the recording turns out to be damaged, a note is made and what is still whole goes on coming.
         """
         for batch in self._batches(topics):
-            yield from starmap(RawMessage, batch.rows())
+            yield from batch.rows()
 
     def windows(self, topics: Collection[str], *, pause: int = 0) -> Iterator[Window]:
         """Yield the messages of `topics` by windows of recorded time; memory stays flat in the bag's length.
@@ -95,20 +94,19 @@ class Bag:
 
     def _batches(self, topics: Collection[str]) -> Iterator[Batch]:
         wanted = set(topics)
-        delivered: Counter[str] = Counter()
-        if self._reader is not None:
-            try:
-                for batch in read_whole(self._reader, wanted):
-                    yield batch
-                    delivered += batch.counts()
-                return
-            except Exception as error:  # a parser of damaged files raises anything
-                self._note(
-                    f"{self.path.name} is damaged ({one_line(error)}); what is still whole is read piece by piece"
-                )
-                self._pieces = [self._piece(file) for file in self._files()]
-        for piece in self._pieces:
-            yield from in_batches(self._salvaged(piece, wanted, delivered))
+        for path, reader in self._parts:
+            delivered: Counter[str] = Counter()
+            if not isinstance(reader, Walk):
+                try:
+                    for batch in reader.batches(wanted):
+                        yield batch
+                        delivered += batch.counts()
+                    continue
+                except Exception as error:  # a parser of damaged files raises anything
+                    cause = f"{path.name} is damaged ({one_line(error)})"
+                    self._note(f"{cause}; what is still whole is read piece by piece")
+                    reader = self._walk(path)
+            yield from in_batches(_salvaged(reader, wanted, delivered))
 
     def _open(self) -> tuple[RawTopic, ...]:
         if not self.path.exists():
@@ -123,51 +121,60 @@ class Bag:
             raise BagError(f"{self.path} cannot be read: {error.strerror}; check its permissions") from None
         if not files:
             raise BagError(f"{self.path} is no rosbag2 recording: no .mcap or .db3 file is in it")
-        unsaved = [file.name for file in files if _has_unsaved_rows(file)]
-        if unsaved:
-            self._note(f"{', '.join(unsaved)} was not closed: what its write-ahead log holds is read too")
-        else:
-            try:
-                return self._open_whole(files)
-            except Exception as error:  # a parser of damaged files raises anything
-                self._note(f"{self.path.name} is not whole ({one_line(error)}); only what is still whole is read")
-        pieces = []
         for file in files:
             try:
-                pieces.append(self._piece(file))
+                self._parts.append(self._part(file))
             except BagError as error:
                 if len(files) == 1:
                     raise
                 self._note(str(error))
-        self._pieces = pieces
-        if not pieces:
+        if not self._parts:
             raise BagError(f"{self.path}: none of its {len(files)} files can be read; give another recording")
-        return _merged(topic for piece in pieces for topic in piece.topics())
-
-    def _open_whole(self, files: list[Path]) -> tuple[RawTopic, ...]:
-        single = self.path.is_file()
-        reader = Reader(self._plain(files[0]) if single else self.path)
-        reader.open()
-        self._stack.callback(_close_quietly, reader)
-        self._reader = reader
-        if reader.message_count:
-            self.start, self.end = reader.start_time, reader.end_time
-        return _merged(RawTopic(c.topic, c.msgtype, c.msgcount) for c in reader.connections)
+        whole = [reader for _, reader in self._parts if not isinstance(reader, Walk)]
+        spans = [reader.span for reader in whole if reader.span]
+        if spans and len(whole) == len(self._parts):
+            self.start, self.end = min(spans)[0], max(span[1] for span in spans)
+        return _merged(topic for _, reader in self._parts for topic in reader.topics())
 
     def _files(self) -> list[Path]:
+        """Return the storage files, in the order that the metadata gives if there are any."""
         if self.path.is_file():
             return [self.path]
-        return sorted((file for file in self.path.iterdir() if _is_storage(file)), key=_natural_order)
+        found = sorted((file for file in self.path.iterdir() if _is_storage(file)), key=_natural_order)
+        if not found:
+            return []
+        try:
+            metadata = yaml.safe_load((self.path / "metadata.yaml").read_text(encoding="utf-8"))
+            names = [PurePath(path).name for path in metadata["rosbag2_bagfile_information"]["relative_file_paths"]]
+        except Exception as error:  # damaged YAML is anything
+            self._note(f"{self.path.name} is not whole (its metadata.yaml cannot be read: {one_line(error)})")
+            return found
+        if missing := [name for name in names if not (self.path / name).exists()]:
+            self._note(f"{self.path.name} is not whole ({', '.join(missing)} missing); only what is there is read")
+        return [self.path / name for name in names if name not in missing] or found
 
-    def _piece(self, file: Path) -> DamagedMcap | DamagedSqlite:
+    def _part(self, file: Path) -> tuple[Path, WholeMcap | WholeSqlite | Walk]:
+        """Return a file, decompressed, and what reads it: in bulk if it is whole."""
         plain = self._plain(file)
-        if plain.suffix == ".mcap":
-            return DamagedMcap(plain, self._note)
-        whole = self._folder() / plain.name
-        if restore_length(plain, whole):
-            self._note(f"{plain.name} is cut off: the recording was not closed")
-            plain = whole
-        return DamagedSqlite(plain, self._note)
+        if has_unsaved_rows(plain):
+            self._note(f"{plain.name} was not closed: what its write-ahead log holds is read too")
+        try:
+            if plain.suffix != ".mcap":
+                return plain, WholeSqlite(plain)
+            whole = WholeMcap(plain)
+            if whole.indexed:
+                return plain, whole
+        except Exception as error:  # a parser of damaged files raises anything
+            self._note(f"{file.name} is not whole ({one_line(error)}); only what is still whole is read")
+        return plain, self._walk(plain)
+
+    def _walk(self, plain: Path) -> Walk:
+        if plain.suffix != ".mcap":
+            whole = self._folder() / plain.name
+            if restore_length(plain, whole):
+                self._note(f"{plain.name} is cut off: the recording was not closed")
+                plain = whole
+        return walk_through(plain, self._note)
 
     def _plain(self, file: Path) -> Path:
         """Return `file`, or a decompressed copy of it that lives as long as the bag is open."""
@@ -185,32 +192,26 @@ class Bag:
         """Make a folder that lives as long as the bag is open."""
         return Path(self._stack.enter_context(tempfile.TemporaryDirectory(prefix="hd-monitor-")))
 
-    def _salvaged(
-        self, piece: DamagedMcap | DamagedSqlite, wanted: Collection[str], delivered: Counter[str]
-    ) -> Iterator[RawMessage]:
-        """Yield what is whole in a file, but for as many messages of each topic as have been delivered already."""
-        for message in piece.messages():
-            if message.topic not in wanted:
-                continue
-            data = message.data
-            if data[:4] == MAGIC:
-                try:
-                    data = decompress(data)
-                except Exception:  # a damaged message is missing: the gap is counted further on
-                    continue
-            if delivered[message.topic]:
-                delivered[message.topic] -= 1
-                continue
-            yield message._replace(data=data)
-
     def _note(self, sentence: str) -> None:
         if sentence not in self.notes:
             self.notes.append(sentence)
 
 
-def _close_quietly(reader: Reader) -> None:
-    with suppress(Exception):  # a damaged file may fail at its closing too
-        reader.close()
+def _salvaged(walk: Walk, wanted: Collection[str], delivered: Counter[str]) -> Iterator[RawMessage]:
+    """Yield what is whole in a file, but for as many messages of each topic as have been delivered already."""
+    for message in walk.messages():
+        if message.topic not in wanted:
+            continue
+        data = message.data
+        if data.startswith(MAGIC):
+            try:
+                data = decompress_leniently("zstd", data)
+            except Exception:  # a damaged message is missing: the gap is counted further on
+                continue
+        if delivered[message.topic]:
+            delivered[message.topic] -= 1
+            continue
+        yield message._replace(data=data)
 
 
 def _is_storage(file: Path) -> bool:
@@ -223,12 +224,7 @@ def _natural_order(file: Path) -> list[tuple[int, str]]:
     return [(int(part or 0), text) for text, part in re.findall(r"(\D*)(\d*)", file.name)]
 
 
-def _has_unsaved_rows(file: Path) -> bool:
-    log = file.with_name(f"{file.name}-wal")
-    return log.is_file() and log.stat().st_size > 0
-
-
-def _merged(topics: Iterator[RawTopic]) -> tuple[RawTopic, ...]:
+def _merged(topics: Iterable[RawTopic]) -> tuple[RawTopic, ...]:
     counts: Counter[tuple[str, str]] = Counter()
     for topic in topics:
         counts[topic.name, topic.type] += topic.messages

@@ -12,6 +12,22 @@ ROWS = 1024
 """Messages taken at once from a source that gives them one by one."""
 
 
+class RawTopic(NamedTuple):
+    """A topic: its name, its type as ``package/msg/Type`` and the number of its messages."""
+
+    name: str
+    type: str
+    messages: int
+
+
+class RawMessage(NamedTuple):
+    """A serialised message: its topic, the time it was recorded at [ns] and its bytes."""
+
+    topic: str
+    time: int
+    data: bytes
+
+
 class Batch(NamedTuple):
     """Messages in the order of the recording.
 
@@ -34,9 +50,9 @@ class Batch(NamedTuple):
         """Return how many messages there are of each topic."""
         return Counter(dict(zip(self.names, np.bincount(self.topics, minlength=len(self.names)).tolist(), strict=True)))
 
-    def rows(self) -> Iterator[tuple[str, int, bytes]]:
-        """Yield topic, time [ns] and data of each message."""
-        return zip(map(self.names.__getitem__, self.topics.tolist()), self.times.tolist(), self.data, strict=True)
+    def rows(self) -> Iterator[RawMessage]:
+        """Yield the messages one by one."""
+        return map(RawMessage, map(self.names.__getitem__, self.topics.tolist()), self.times.tolist(), self.data)
 
     @classmethod
     def of_rows(cls, rows: Iterable[tuple[Any, int, bytes]], name: Callable[[Any], str]) -> Self:

@@ -1,60 +1,56 @@
-"""Decompression, by the modules that rosbags has brought along."""
+"""Decompression of files, chunks and messages: Zstandard and LZ4."""
 
-import importlib
-import shutil
-from functools import cache
+from collections.abc import Iterable, Iterator
 from itertools import repeat
 from pathlib import Path
 from typing import Any
 
+import lz4.frame
+import zstandard
+
 MAGIC = b"\x28\xb5\x2f\xfd"
 """First bytes of Zstandard data; no CDR message begins so."""
 
-_ZSTANDARD = ("compression.zstd", "backports.zstd", "zstandard")  # Python's own, then by rosbags' age
-
-
-@cache
-def _module() -> Any:
-    for name in _ZSTANDARD:
-        try:
-            return importlib.import_module(name)
-        except ModuleNotFoundError:
-            continue
-    raise ModuleNotFoundError("no module for Zstandard", name="zstandard")
+_PIECE = 1 << 20
+"""Bytes of a file that are decompressed at once."""
 
 
 def _decompressor(kind: str) -> Any:
     if kind == "lz4":
-        return importlib.import_module("lz4.frame").LZ4FrameDecompressor()
+        return lz4.frame.LZ4FrameDecompressor()
     if kind == "zstd":
-        made = _module().ZstdDecompressor()
-        return made.decompressobj() if hasattr(made, "decompressobj") else made
+        return zstandard.ZstdDecompressor().decompressobj()
     raise ValueError(f"its compression {kind!r} is unknown")
 
 
-def decompress(data: bytes) -> bytes:
-    """Return the contents of Zstandard data; of data cut off, what precedes the cut.
+def _parts(kind: str, pieces: Iterable[bytes]) -> Iterator[bytes]:
+    """Yield the contents of compressed data that comes in pieces, one frame after the other."""
+    frame = _decompressor(kind)
+    for data in pieces:
+        while data:
+            if frame.eof:
+                frame = _decompressor(kind)
+            yield frame.decompress(data)
+            data = frame.unused_data if frame.eof else b""
+    if not frame.eof:
+        raise ValueError("its compressed data is cut off")
+
+
+def decompress(kind: str, data: bytes) -> bytes:
+    """Return the contents of a chunk or a message, by the name of its compression.
 
     Raises
     ------
+    ValueError
+        If the kind is neither ``''``, ``'zstd'`` nor ``'lz4'``, or the data is cut off.
     Exception
         If the data is damaged; the class is the module's own.
     """
-    return decompress_leniently("zstd", data)
-
-
-def decompress_where_packed(messages: list[bytes]) -> list[bytes]:
-    """Decompress those messages that are compressed.
-
-    A file taken out of its folder has lost the note that each of its messages is compressed.
-    """
-    if not any(map(bytes.startswith, messages, repeat(MAGIC))):
-        return messages
-    return [decompress(message) if message.startswith(MAGIC) else message for message in messages]
+    return b"".join(_parts(kind, [data])) if kind else data
 
 
 def decompress_leniently(kind: str, data: bytes) -> bytes:
-    """Return as much of the contents of a chunk as there is, by the name of its compression.
+    """Return as much of the contents of a chunk or a message as there is before a cut.
 
     Raises
     ------
@@ -66,29 +62,20 @@ def decompress_leniently(kind: str, data: bytes) -> bytes:
     return bytes(_decompressor(kind).decompress(data)) if kind else data
 
 
-def decompress_whole(kind: str, data: bytes) -> bytes:
-    """Return the contents of a chunk or a message, by the name of its compression.
+def decompress_where_packed(messages: list[bytes]) -> list[bytes]:
+    """Decompress those messages that are compressed; their first bytes say so.
 
     Raises
     ------
-    ValueError
-        If the kind is neither ``''``, ``'zstd'`` nor ``'lz4'``, or the data is cut off.
     Exception
-        If the data is damaged; the class is the module's own.
+        As `decompress`.
     """
-    if not kind:
-        return data
-    parts: list[bytes] = []
-    while data or not parts:  # one frame after the other
-        frame = _decompressor(kind)
-        parts.append(bytes(frame.decompress(data)))
-        if not frame.eof:
-            raise ValueError("its compressed data is cut off")
-        data = frame.unused_data or b""
-    return parts[0] if len(parts) == 1 else b"".join(parts)
+    if not any(map(bytes.startswith, messages, repeat(MAGIC))):
+        return messages
+    return [decompress("zstd", message) if message.startswith(MAGIC) else message for message in messages]
 
 
 def decompress_file(source: Path, target: Path) -> None:
-    """Write the contents of a Zstandard file; what precedes a damage is kept and the module's error raised."""
-    with _module().open(source, "rb") as packed, target.open("wb") as plain:
-        shutil.copyfileobj(packed, plain)
+    """Write the contents of a Zstandard file; what precedes damage is kept and the error raised."""
+    with source.open("rb") as packed, target.open("wb") as plain:
+        plain.writelines(_parts("zstd", iter(lambda: packed.read(_PIECE), b"")))

@@ -4,8 +4,8 @@ from collections.abc import Callable, Mapping, Sequence
 
 from ..contract import BLOCK_LABEL
 from ..sources import Quantity, Source
+from .batches import RawTopic
 from .errors import BagError
-from .salvage import RawTopic
 
 Labels = Callable[[str], tuple[str, ...]]
 """Gives the labels of the dimensions of an array topic's first message."""

@@ -39,7 +39,7 @@ def run_without(package: str, *words: str) -> subprocess.CompletedProcess[str]:
         ("diagnostic_msgs", ("demo", "--defect", "both"), "needs ROS 2 (diagnostic_msgs is missing)"),
         ("hd_sim_node", ("demo",), "needs the package hd_sim_node, which is not installed"),
         ("hd_sim_node", ("parameters",), "needs the package hd_sim_node, which is not installed"),
-        ("rosbags", ("replay", "bag"), "'.[offline]'"),
+        ("mcap", ("replay", "bag"), "'.[offline]'"),
     ],
 )
 def test_what_is_missing_is_one_clear_line(package: str, words: tuple[str, ...], advice: str) -> None:

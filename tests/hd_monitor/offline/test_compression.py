@@ -2,7 +2,7 @@
 
 import pytest
 
-from hd_monitor.offline.compression import decompress_leniently, decompress_where_packed, decompress_whole
+from hd_monitor.offline.compression import decompress, decompress_leniently, decompress_where_packed
 
 lz4 = pytest.importorskip("lz4.frame")
 zstd = pytest.importorskip("backports.zstd")
@@ -13,8 +13,8 @@ PACKED = {"zstd": zstd.compress(TEXT), "lz4": lz4.compress(TEXT)}
 
 @pytest.mark.parametrize("kind", ["zstd", "lz4"])
 def test_both_ways_agree_on_what_is_whole(kind: str) -> None:
-    assert decompress_whole(kind, PACKED[kind]) == decompress_leniently(kind, PACKED[kind]) == TEXT
-    assert decompress_whole(kind, 2 * PACKED[kind]) == 2 * TEXT
+    assert decompress(kind, PACKED[kind]) == decompress_leniently(kind, PACKED[kind]) == TEXT
+    assert decompress(kind, 2 * PACKED[kind]) == 2 * TEXT
 
 
 @pytest.mark.parametrize("kind", ["zstd", "lz4"])
@@ -23,15 +23,15 @@ def test_what_is_cut_off_is_whole_to_none_but_the_lenient(kind: str) -> None:
     assert TEXT.startswith(decompress_leniently(kind, part))
     assert len(decompress_leniently(kind, part)) > 1000
     with pytest.raises(ValueError, match="cut off"):
-        decompress_whole(kind, part)
+        decompress(kind, part)
     with pytest.raises(ValueError, match="cut off"):
-        decompress_whole(kind, b"")
+        decompress(kind, b"")
 
 
 def test_an_unknown_compression_is_named() -> None:
-    assert decompress_whole("", TEXT) is TEXT
+    assert decompress("", TEXT) is TEXT
     with pytest.raises(ValueError, match="'brotli' is unknown"):
-        decompress_whole("brotli", TEXT)
+        decompress("brotli", TEXT)
 
 
 def test_only_packed_messages_are_unpacked() -> None:

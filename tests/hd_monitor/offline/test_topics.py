@@ -4,8 +4,8 @@ from collections.abc import Mapping
 
 import pytest
 
+from hd_monitor.offline.batches import RawTopic
 from hd_monitor.offline.errors import BagError
-from hd_monitor.offline.salvage import RawTopic
 from hd_monitor.offline.topics import TopicFinder
 from hd_monitor.settings import JointSettings
 from hd_monitor.sources import INPUT_SOURCES, Quantity, Source

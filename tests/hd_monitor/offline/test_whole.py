@@ -16,10 +16,7 @@ from tests.hd_monitor.offline.mcap_files import Sent
 
 from hd_monitor.offline.bag import Bag
 from hd_monitor.offline.compression import MAGIC
-from hd_monitor.offline.whole import read_whole
-
-if not hasattr(pytest.importorskip("rosbags.rosbag2.reader"), "DirectoryReader"):
-    pytest.skip("this rosbags reads no single files to compare with", allow_module_level=True)
+from hd_monitor.offline.whole_mcap import WholeMcap
 
 TOPICS = ("/a", "/b", "/c")
 Row = tuple[str, int, bytes]
@@ -42,9 +39,9 @@ def not_in_bulk(*_: object) -> Iterator[Any]:
 
 @pytest.fixture
 def bulk_only() -> Iterator[None]:
-    """Take care that rosbags reads no message for us."""
+    """Fail where messages are read one by one."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("hd_monitor.offline.whole.in_batches", not_in_bulk)
+        patch.setattr("hd_monitor.offline.bag.in_batches", not_in_bulk)
         yield
 
 
@@ -76,7 +73,7 @@ def test_any_chunks_give_what_rosbags_gives(
     path = tmp_path_factory.mktemp("chunks") / "a.mcap"
     mcap_files.write(path, chunks, TOPICS, compression=compression, checksum=checksum)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("hd_monitor.offline.whole.in_batches", not_in_bulk)
+        patch.setattr("hd_monitor.offline.bag.in_batches", not_in_bulk)
         assert by_us(path, topics) == (by_rosbags(path, topics), [])
 
 
@@ -90,15 +87,12 @@ def test_a_recorded_folder_gives_what_rosbags_gives(
     assert by_us(path, topics) == (by_rosbags(path, topics), [])
 
 
+@pytest.mark.usefixtures("bulk_only")
 @pytest.mark.parametrize("compression", [None, "file", "message"])
 @pytest.mark.parametrize("topics", [("/joint_states",), ("/joint_states", "/torsional_acceleration/block"), ("/x",)])
-def test_a_database_gives_what_rosbags_gives(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, topics: tuple[str, ...], compression: str | None
-) -> None:
+def test_a_database_gives_what_rosbags_gives(tmp_path: Path, topics: tuple[str, ...], compression: str | None) -> None:
     path = rec.write(tmp_path / "bag", rec.small(40.0), storage=rec.SQLITE, compression=compression)
-    expected = by_rosbags(path, topics)
-    monkeypatch.setattr(rec.rosbag2.Reader, "messages", not_in_bulk)
-    assert by_us(path, topics) == (expected, [])
+    assert by_us(path, topics) == (by_rosbags(path, topics), [])
 
 
 def test_rows_of_equal_times_come_in_the_order_in_which_they_were_written(tmp_path: Path) -> None:
@@ -169,8 +163,7 @@ def test_a_late_chunk_is_read_before_what_it_precedes(tmp_path: Path) -> None:
 def test_only_chunks_that_overlap_are_held_together(tmp_path: Path) -> None:
     chunks = [some(1000 * number, 50, 1 + number % 3) for number in range(20)]
     path = mcap_files.write(tmp_path / "a.mcap", chunks, TOPICS)
-    with rec.rosbag2.Reader(path) as reader:
-        assert [len(batch.data) for batch in read_whole(reader, TOPICS)] == [50] * 20
+    assert [len(batch.data) for batch in WholeMcap(path).batches(TOPICS)] == [50] * 20
 
 
 @pytest.mark.usefixtures("bulk_only")
@@ -189,7 +182,7 @@ def test_a_message_that_is_not_wholly_compressed_is_noted_and_costs_no_other(tmp
     assert "cut off" in " ".join(notes)
 
 
-def test_a_file_without_chunks_is_left_to_rosbags(tmp_path: Path) -> None:
+def test_a_file_without_chunks_is_walked_through(tmp_path: Path) -> None:
     path = mcap_files.write_unchunked(tmp_path / "a.mcap", some(0, 3000), "/a")
     rows, notes = by_us(path)
     assert rows == by_rosbags(path)

@@ -1,6 +1,6 @@
 """Windows cut from columns are those that would be cut message by message."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import pytest
 from hypothesis import given, settings
@@ -12,7 +12,7 @@ from hd_monitor.offline.windows import Window, windows
 Row = tuple[str, int, bytes]
 
 
-def one_by_one(rows: list[Row], length: int, most: int, pause: int) -> Iterator[Window]:
+def one_by_one(rows: Iterable[Row], length: int, most: int, pause: int) -> Iterator[Window]:
     collected: dict[str, list[bytes]] = {}
     opened = latest = count = 0
     for topic, time, data in rows:

@@ -2,13 +2,16 @@
 
 import struct
 import zlib
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from mcap.opcode import Opcode
+from mcap.records import Chunk
 from tests.hd_monitor.offline import mcap_files
 from tests.hd_monitor.offline.mcap_files import Sent
 
-from hd_monitor.offline.mcap import MESSAGE, ChunkBody, DamageError, Records, heads
+from hd_monitor.offline.mcap_records import DamageError, Records, checked_content, heads
 
 SENT = [Sent(3, 50, b"fifty"), Sent(1, 40, b""), Sent(3, 50, b"more")]
 CONTENT = b"".join(map(mcap_files.message_record, SENT))
@@ -35,7 +38,7 @@ def test_what_is_cut_off_gives_the_records_before_the_cut(missing: int) -> None:
 
 
 def test_a_message_too_short_to_be_one_is_left_out() -> None:
-    short = struct.pack("<BQ", MESSAGE, 3) + b"abc"
+    short = struct.pack("<BQ", Opcode.MESSAGE, 3) + b"abc"
     assert found(short + CONTENT + short) == SENT
     assert not Records.parse(short + CONTENT).whole
 
@@ -52,12 +55,13 @@ def test_messages_of_equal_times_stay_in_the_order_of_the_file() -> None:
 @pytest.mark.parametrize("compression", ["", "lz4", "zstd"])
 def test_a_chunk_of_another_size_or_checksum_than_announced_is_damaged(compression: str) -> None:
     size, checksum, packed = len(CONTENT), zlib.crc32(CONTENT), mcap_files.PACK[compression](CONTENT)
-    assert ChunkBody(size, checksum, compression, packed).content() == CONTENT
-    assert ChunkBody(size, 0, compression, packed).content() == CONTENT
+    chunk = Chunk(compression, packed, 50, 40, checksum, size)
+    assert checked_content(chunk) == CONTENT
+    assert checked_content(replace(chunk, uncompressed_crc=0)) == CONTENT
     with pytest.raises(DamageError, match="bytes instead of"):
-        ChunkBody(size + 1, 0, compression, packed).content()
+        checked_content(replace(chunk, uncompressed_size=size + 1))
     with pytest.raises(DamageError, match="checksum"):
-        ChunkBody(size, checksum + 1, compression, packed).content()
+        checked_content(replace(chunk, uncompressed_crc=checksum + 1))
 
 
 def test_a_file_cut_anywhere_says_so(tmp_path: Path) -> None:

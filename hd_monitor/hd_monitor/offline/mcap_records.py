@@ -6,20 +6,22 @@ holds thousands of messages for every second that its reading may take.
 
 import struct
 from collections.abc import Iterator
+from io import BytesIO
 from typing import Any, BinaryIO, NamedTuple, Self
 from zlib import crc32
 
 import numpy as np
+from mcap.data_stream import ReadDataStream
+from mcap.opcode import Opcode
+from mcap.records import Chunk, ChunkIndex
 from numpy.typing import NDArray
 
-from .compression import decompress_whole
+from .compression import decompress
 
 MAGIC = b"\x89MCAP0\r\n"
-SCHEMA, CHANNEL, MESSAGE, CHUNK, DATA_END = 0x03, 0x04, 0x05, 0x06, 0x0F
 
 _HEAD = struct.Struct("<BQ")  # code and length of what follows
 _MESSAGE_HEAD = 22  # channel, sequence, times of recording and of publishing
-_CHUNK_HEAD = struct.Struct("<QQQI")  # first and last time, size of the content, its checksum
 _LARGEST = 1 << 31
 
 
@@ -49,7 +51,7 @@ def heads(file: BinaryIO, name: str) -> Iterator[Head]:
     while at + _HEAD.size <= size:
         file.seek(at)
         code, length = _HEAD.unpack(file.read(_HEAD.size))
-        if code == DATA_END:
+        if code == Opcode.DATA_END:
             return
         if length > _LARGEST or not 0 < code < 0x80:
             raise DamageError(f"{name} is damaged at byte {at}: what follows cannot be read")
@@ -59,54 +61,51 @@ def heads(file: BinaryIO, name: str) -> Iterator[Head]:
     raise DamageError(f"{name} is cut off after {size} bytes: the recording was not closed")
 
 
-class ChunkBody(NamedTuple):
-    """A chunk as it stands in the file; its `packed` content is shorter than it was where the file is cut off."""
+def parse_chunk(body: bytes) -> Chunk:
+    """Read the body of a chunk's record; its `data` is short where the body is cut off.
 
-    size: int
-    checksum: int
-    compression: str
-    packed: bytes
+    Raises
+    ------
+    Exception
+        If there is nothing of the data, or what precedes it is damaged; the class is the ``mcap`` package's own.
+    """
+    chunk: Chunk = Chunk.read(ReadDataStream(BytesIO(body)))
+    return chunk
 
-    @classmethod
-    def parse(cls, body: bytes) -> Self:
-        """Take a chunk's record apart."""
-        _, _, size, checksum = _CHUNK_HEAD.unpack_from(body)
-        compression, at = _string(body, _CHUNK_HEAD.size)
-        (packed,) = struct.unpack_from("<Q", body, at)
-        return cls(size, checksum, compression.decode(), body[at + 8 : at + 8 + packed])
 
-    @classmethod
-    def read(cls, file: BinaryIO, begin: int, compression: str, packed: int, size: int) -> Self:
-        """Read the chunk whose record begins at `begin`, the rest being known from the file's index.
+def read_chunk(file: BinaryIO, index: ChunkIndex) -> bytes:
+    """Read the chunk that an index record describes; return its content, decompressed.
 
-        Raises
-        ------
-        DamageError
-            If the file ends before the chunk does.
-        """
-        file.seek(begin + _HEAD.size)
-        head = _CHUNK_HEAD.size + 4 + len(compression.encode()) + 8
-        described, content = file.read(head), file.read(packed)
-        if len(content) < packed:
-            raise DamageError(f"the chunk at byte {begin} is cut off")
-        return cls(size, _CHUNK_HEAD.unpack_from(described)[3], compression, content)
+    Raises
+    ------
+    DamageError
+        If the file ends before the chunk does, or the content's size or checksum is not the one announced.
+    Exception
+        If it cannot be decompressed; the class is the decompressor's own.
+    """
+    file.seek(index.chunk_start_offset + _HEAD.size)
+    chunk = parse_chunk(file.read(max(index.chunk_length - _HEAD.size, 0)))
+    if len(chunk.data) < index.compressed_size:
+        raise DamageError(f"the chunk at byte {index.chunk_start_offset} is cut off")
+    return checked_content(chunk)
 
-    def content(self) -> bytes:
-        """Return the content, decompressed.
 
-        Raises
-        ------
-        DamageError
-            If its size or its checksum is another than announced.
-        Exception
-            If it cannot be decompressed; the class is the decompressor's own.
-        """
-        content = decompress_whole(self.compression, self.packed)
-        if len(content) != self.size:
-            raise DamageError(f"a chunk holds {len(content)} bytes instead of {self.size}")
-        if self.checksum and crc32(content) != self.checksum:
-            raise DamageError("the checksum of a chunk is wrong")
-        return content
+def checked_content(chunk: Chunk) -> bytes:
+    """Return a chunk's content, decompressed.
+
+    Raises
+    ------
+    DamageError
+        If its size or its checksum is not the one announced.
+    Exception
+        If it cannot be decompressed; the class is the decompressor's own.
+    """
+    content = decompress(chunk.compression, chunk.data)
+    if len(content) != chunk.uncompressed_size:
+        raise DamageError(f"a chunk holds {len(content)} bytes instead of {chunk.uncompressed_size}")
+    if chunk.uncompressed_crc and crc32(content) != chunk.uncompressed_crc:
+        raise DamageError("the checksum of a chunk is wrong")
+    return content
 
 
 class Channels:
@@ -118,12 +117,12 @@ class Channels:
 
     def learn(self, code: int, body: bytes) -> None:
         """Keep what a record says of types or topics."""
-        if code == SCHEMA and len(body) >= 6:
+        if code == Opcode.SCHEMA and len(body) >= 6:
             (number,) = struct.unpack_from("<H", body)
-            self._types[number] = _string(body, 2)[0].decode(errors="replace")
-        elif code == CHANNEL and len(body) >= 8:
+            self._types[number] = _string(body, 2)
+        elif code == Opcode.CHANNEL and len(body) >= 8:
             number, schema = struct.unpack_from("<HH", body)
-            self.topics[number] = (_string(body, 4)[0].decode(errors="replace"), self._types.get(schema, ""))
+            self.topics[number] = (_string(body, 4), self._types.get(schema, ""))
 
 
 class Messages(NamedTuple):
@@ -183,7 +182,7 @@ class Records(NamedTuple):
         starts = np.array(found, dtype=np.int64)
         begins = starts + _HEAD.size
         ends = begins + _numbers(content, "<u8", starts + 1).astype(np.int64)
-        is_message = _numbers(content, "u1", starts) == MESSAGE
+        is_message = _numbers(content, "u1", starts) == Opcode.MESSAGE
         is_whole = ends - begins >= _MESSAGE_HEAD
         others = np.flatnonzero(~is_message)
         spans = zip(starts[others].tolist(), begins[others].tolist(), ends[others].tolist(), strict=True)
@@ -211,7 +210,6 @@ def _numbers(content: bytes, kind: str, places: NDArray[np.int64]) -> NDArray[An
     return np.ndarray((count,), dtype, content, strides=(1,))[places]
 
 
-def _string(body: bytes, at: int) -> tuple[bytes, int]:
+def _string(body: bytes, at: int) -> str:
     (length,) = struct.unpack_from("<I", body, at)
-    at += 4
-    return body[at : at + length], at + length
+    return body[at + 4 : at + 4 + length].decode(errors="replace")

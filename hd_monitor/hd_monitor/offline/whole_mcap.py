@@ -1,0 +1,129 @@
+"""Whole MCAP files: the ``mcap`` package reads what their summary says; the chunks are read in bulk, in order of time.
+
+The package reads messages too, one by one; ``tests/benchmarks/replay_speed.py`` prints how much longer that takes.
+"""
+
+from collections.abc import Collection, Iterable, Iterator
+from itertools import zip_longest
+from pathlib import Path
+from typing import BinaryIO
+
+import numpy as np
+from mcap.reader import make_reader
+from mcap.records import ChunkIndex
+from mcap.summary import Summary
+from numpy.typing import NDArray
+
+from .batches import Batch, RawTopic
+from .compression import MAGIC, decompress_where_packed
+from .mcap_records import DamageError, Messages, Records, read_chunk
+
+_CHANNELS = 1 << 16
+
+
+class WholeMcap:
+    """An MCAP file as its summary describes it.
+
+    Parameters
+    ----------
+    path : Path
+
+    Attributes
+    ----------
+    span : tuple of (int, int) or None
+        Times of recording of the first and the last message [ns]; None without messages.
+    indexed : bool
+        Whether the summary lists the chunks; without it the file can only be walked through.
+
+    Raises
+    ------
+    Exception
+        If the file does not end as it should or its summary is damaged; the class is the ``mcap`` package's own.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        with path.open("rb") as file:
+            summary = make_reader(file).get_summary()
+        self._summary = summary or Summary()
+        statistics = self._summary.statistics
+        messages = statistics.message_count if statistics else 0
+        self._counts = statistics.channel_message_counts if statistics else {}
+        self.indexed = statistics is not None and (bool(self._summary.chunk_indexes) or not messages)
+        self.span = (statistics.message_start_time, statistics.message_end_time) if statistics and messages else None
+
+    def topics(self) -> list[RawTopic]:
+        """Return the topics as the summary lists them."""
+        types = {number: schema.name for number, schema in self._summary.schemas.items()}
+        channels = self._summary.channels.items()
+        return [RawTopic(c.topic, types.get(c.schema_id, ""), self._counts.get(number, 0)) for number, c in channels]
+
+    def batches(self, wanted: Collection[str]) -> Iterator[Batch]:
+        """Yield the messages of the topics in `wanted` by their times, those of equal times in the order of the file.
+
+        Only chunks that overlap in time are held in memory together.
+
+        Raises
+        ------
+        DamageError
+            If a chunk does not hold what the index says.
+        Exception
+            If something cannot be decompressed; the class is the decompressor's own.
+        """
+        topics = {number: c.topic for number, c in self._summary.channels.items() if c.topic in wanted}
+        names = list(dict.fromkeys(topics.values()))
+        place = np.full(_CHANNELS, -1, dtype=np.intp)  # of the channel's topic among the names
+        for channel, name in topics.items():
+            place[channel] = names.index(name)
+        ordered = _holding(self._summary.chunk_indexes, topics)
+        held: dict[int, Messages] = {}  # by the places of their chunks
+        with self._path.open("rb") as file:
+            for chunk, following in zip_longest(ordered, ordered[1:]):
+                messages = _read(file, chunk)
+                held[chunk.chunk_start_offset] = messages.part(place[messages.channels] >= 0).by_time()
+                # What is not older than the next chunk's first message has to wait for that chunk.
+                cuts = {begin: _older(held[begin], following) for begin in sorted(held)}
+                yield _merged([held[begin].part(slice(cut)) for begin, cut in cuts.items()], names, place)
+                held = {begin: held[begin].part(slice(cut, None)) for begin, cut in cuts.items()}
+                held = {begin: messages for begin, messages in held.items() if messages.times.size}
+
+
+def _holding(chunks: Iterable[ChunkIndex], channels: Collection[int]) -> list[ChunkIndex]:
+    """Return the chunks in which one of the channels is, as far as the index says so, by their first times."""
+    offsets = ((chunk, chunk.message_index_offsets) for chunk in chunks if channels)
+    found = [chunk for chunk, own in offsets if not own or not own.keys().isdisjoint(channels)]
+    return sorted(found, key=lambda chunk: (chunk.message_start_time, chunk.chunk_start_offset))
+
+
+def _read(file: BinaryIO, chunk: ChunkIndex) -> Messages:
+    records = Records.parse(read_chunk(file, chunk))
+    times = records.messages.times
+    begin = chunk.chunk_start_offset
+    if not records.whole:
+        raise DamageError(f"the records of the chunk at byte {begin} do not fill it")
+    if times.size and not chunk.message_start_time <= int(times.min()) <= int(times.max()) <= chunk.message_end_time:
+        raise DamageError(f"the chunk at byte {begin} holds messages of other times than announced")
+    return records.messages
+
+
+def _older(messages: Messages, following: ChunkIndex | None) -> int:
+    """Count the messages older than a chunk; all are if none follows."""
+    if following is None:
+        return len(messages.times)
+    # As an int, the time would be compared in floating point, which does not hold it.
+    return int(np.searchsorted(messages.times, np.uint64(following.message_start_time)))
+
+
+def _merged(parts: list[Messages], names: list[str], place: NDArray[np.intp]) -> Batch:
+    times = np.concatenate([part.times for part in parts])
+    topics = place[np.concatenate([part.channels for part in parts])]
+    data = [message for part in parts for message in _data(part)]
+    if len(parts) > 1:
+        order = np.argsort(times, kind="stable")
+        times, topics, data = times[order], topics[order], [data[index] for index in order.tolist()]
+    return Batch(times, topics, names, data)
+
+
+def _data(messages: Messages) -> list[bytes]:
+    data = messages.data()
+    return decompress_where_packed(data) if messages.may_begin(MAGIC) else data
