@@ -1,13 +1,12 @@
-"""The topics' names and array layouts, as arrays: what a publisher packs and a subscriber unpacks.
+"""The topics' names, and the layouts of their arrays as a publisher packs and a subscriber unpacks them.
 
-Nothing here knows a message class: the ROS shell and the offline reader both hand over labels, sizes and data.
+Nothing here knows a message class: the ROS shell and the offline reader both pass labels, sizes and data.
 """
 
 from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from .arrays import FloatArray
 from .errors import LayoutError
@@ -24,7 +23,7 @@ BLOCK_LABEL = "torsional_acceleration"
 BLOCK_OFFSET = 4
 """Values before the first sample: seconds, nanoseconds, sample period, sequence number."""
 
-_TOO_MUCH = (2.0**33, 1e9, 2.0**63)  # seconds, nanoseconds and sequence number from which none is meant
+_TOO_MUCH = (2.0**33, 1e9, 2.0**63)  # seconds, nanoseconds and sequence number: from here on damaged data
 
 MAX_ZOOM_BINS = 50
 """Viewers drop arrays of more than 100 values; a bin takes two."""
@@ -54,7 +53,7 @@ class Block(NamedTuple):
 
 
 def pack_block(block: Block) -> tuple[Dimension, FloatArray]:
-    """Lay out a block as the topic ``torsional_acceleration/block`` wants it: (dimension, data)."""
+    """Lay out a block as the topic ``torsional_acceleration/block`` carries it: (dimension, data)."""
     count = len(block.samples)
     data = np.empty(BLOCK_OFFSET + count)
     data[0], data[1] = divmod(block.stamp, NANOSECONDS)
@@ -64,58 +63,41 @@ def pack_block(block: Block) -> tuple[Dimension, FloatArray]:
     return Dimension(BLOCK_LABEL, count, count), data
 
 
-def unpack_block(dimensions: Sequence[tuple[str, int, int]], data_offset: int, data: npt.ArrayLike) -> Block:
-    """Read a ``torsional_acceleration/block`` array.
+def unpack_blocks(
+    dimensions: Sequence[tuple[str, int, int]], data_offset: int, data: FloatArray
+) -> list[Block | LayoutError]:
+    """Read ``torsional_acceleration/block`` arrays of the same layout.
 
     Parameters
     ----------
     dimensions : sequence of (label, size, stride)
-        ``layout.dim`` of the message.
+        ``layout.dim`` of the messages.
     data_offset : int
-        ``layout.data_offset`` of the message.
-    data : array_like
-        ``data`` of the message.
+        ``layout.data_offset`` of the messages.
+    data : ndarray, shape (messages, values)
+        ``data`` of each message.
+
+    Returns
+    -------
+    list of Block or LayoutError
+        One a message; in place of a bad one the reason.
 
     Raises
     ------
     LayoutError
         If the layout is not the contract's, saying what differs.
     """
-    try:
-        values = np.asarray(data, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise LayoutError("a block's data are not numbers; the contract asks for a list of float64") from None
-    if values.ndim != 1:
-        raise LayoutError(f"a block's data have the shape {values.shape}; the contract asks for a plain list")
-    (block,) = unpack_blocks(dimensions, data_offset, values[None, :])
-    if isinstance(block, LayoutError):
-        raise block
-    return block
-
-
-def unpack_blocks(
-    dimensions: Sequence[tuple[str, int, int]], data_offset: int, data: FloatArray
-) -> list[Block | LayoutError]:
-    """Read many arrays of the same layout, one a row of `data`; in place of a bad one stands what is wrong with it.
-
-    See :func:`unpack_block`.
-
-    Raises
-    ------
-    LayoutError
-        If the layout is not the contract's.
-    """
     if len(dimensions) != 1:
-        raise LayoutError(f"a block has {len(dimensions)} dimensions; the contract asks for exactly 1")
+        raise LayoutError(f"a block has {len(dimensions)} dimensions; the contract requires exactly 1")
     label, size, stride = dimensions[0]
     if label != BLOCK_LABEL:
-        raise LayoutError(f"a block's dimension is labelled {label!r}; the contract asks for {BLOCK_LABEL!r}")
+        raise LayoutError(f"a block's dimension is labelled {label!r}; the contract requires {BLOCK_LABEL!r}")
     if data_offset != BLOCK_OFFSET:
-        raise LayoutError(f"a block's data_offset is {data_offset}; the contract asks for {BLOCK_OFFSET}")
+        raise LayoutError(f"a block's data_offset is {data_offset}; the contract requires {BLOCK_OFFSET}")
     if stride != size or data.shape[1] != BLOCK_OFFSET + size:
         raise LayoutError(
             f"a block announces {size} samples with stride {stride} but carries {data.shape[1]} values; "
-            f"the contract asks for stride = size and {BLOCK_OFFSET} values before the samples"
+            f"the contract requires stride = size and {BLOCK_OFFSET} values before the samples"
         )
     heads, samples = data[:, :BLOCK_OFFSET], data[:, BLOCK_OFFSET:]
     counts = heads[:, [0, 1, 3]]
@@ -123,18 +105,18 @@ def unpack_blocks(
     runs = (heads[:, 2] > 0.0) & (heads[:, 2] < 10.0)
     good = (starts & runs).tolist()
     return [
-        Block(int(head[0]) * NANOSECONDS + int(head[1]), head[2], int(head[3]), values) if right else _complaint(head)
+        Block(int(head[0]) * NANOSECONDS + int(head[1]), head[2], int(head[3]), values) if right else _fault(head)
         for head, values, right in zip(heads.tolist(), samples, good, strict=True)
     ]
 
 
-def _complaint(head: list[float]) -> LayoutError:
+def _fault(head: list[float]) -> LayoutError:
     """Say what is wrong with the values before a block's samples."""
     seconds, nanoseconds, period, sequence = head
     if not 0.0 < period < 10.0:
-        return LayoutError(f"a block's sample period is {period!r} s; the contract asks for the time between samples")
+        return LayoutError(f"a block's sample period is {period!r} s; the contract requires the time between samples")
     return LayoutError(
-        f"a block starts at {seconds!r} s {nanoseconds!r} ns with number {sequence!r}; the contract asks for "
+        f"a block starts at {seconds!r} s {nanoseconds!r} ns with number {sequence!r}; the contract requires "
         "whole, non-negative values"
     )
 

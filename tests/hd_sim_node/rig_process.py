@@ -2,7 +2,9 @@
 
 import itertools
 
-from hd_monitor.contract import NANOSECONDS, unpack_block
+import numpy as np
+
+from hd_monitor.contract import NANOSECONDS, unpack_blocks
 
 MODULE = "hd_sim_node"
 NODE = "hd_sim_node"
@@ -30,6 +32,9 @@ def stamp_of(message):
 
 def blocks_of(received):
     return [
-        unpack_block([(d.label, d.size, d.stride) for d in m.layout.dim], m.layout.data_offset, m.data)
+        block
         for m in received
+        for block in unpack_blocks(
+            [(d.label, d.size, d.stride) for d in m.layout.dim], m.layout.data_offset, np.asarray([m.data])
+        )
     ]

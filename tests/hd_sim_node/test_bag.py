@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from hd_monitor import cdr, contract
-from hd_monitor.contract import NANOSECONDS, unpack_block
+from hd_monitor.contract import NANOSECONDS, unpack_blocks
+from hd_monitor.errors import LayoutError
 from hd_sim_node.imu import imu_readings
 from hd_sim_node.settings import RigSettings
 from hd_sim_node.simulation import Simulation, Stretch
@@ -76,7 +77,9 @@ def test_messages_carry_the_simulations_values(tmp_path):
     blocks = by_topic.pop(("/torsional_acceleration/block", "std_msgs/msg/Float64MultiArray"))
     for message, (stretch, row) in zip(blocks, sent[contract.TORSIONAL_ACCELERATION_BLOCK], strict=True):
         dimensions = [(d.label, d.size, d.stride) for d in message.layout.dim]
-        block, expected = unpack_block(dimensions, message.layout.data_offset, message.data), stretch.blocks[row]
+        (block,) = unpack_blocks(dimensions, message.layout.data_offset, np.asarray([message.data]))
+        expected = stretch.blocks[row]
+        assert not isinstance(block, LayoutError)
         assert block[:3] == (expected.stamp + START, expected.period, expected.sequence)
         np.testing.assert_array_equal(block.samples, expected.samples)
 

@@ -117,17 +117,19 @@ def _spike_near(values: FloatArray, place: int, limit: float) -> Places:
     """
     low, high = max(0, place - 2 * _AROUND), min(values.size, place + 2 * _AROUND + 1)
     window = values[low:high]
-    curvature = np.nan_to_num(_curvature(window))
+    raw = _curvature(window)
+    curvature, finite = np.nan_to_num(raw), np.isfinite(window)
     near = slice(max(0, place - low - 1 - _LONGEST_SPIKE), place - low + _LONGEST_SPIKE)
     top = near.start + int(np.argmax(curvature[near]))
-    level = np.concatenate([curvature[max(0, top - _AROUND) : max(0, top - 2)], curvature[top + 3 : top + _AROUND + 1]])
+    level = np.concatenate([raw[max(0, top - _AROUND) : max(0, top - 2)], raw[top + 3 : top + _AROUND + 1]])
+    level = level[np.isfinite(level)]
     if curvature[top] <= max(limit, _SPIKE * robust_std(level) if level.size else 0.0):
         return _NOWHERE
     index, best, bridged, most = np.arange(window.size), _NOWHERE, window, 0.0
     for count in range(1, _LONGEST_SPIKE + 1):
         for first in range(top + 1 - count, top + 3):
-            chosen = (index >= first) & (index < first + count)
-            kept = ~chosen & np.isfinite(window)
+            chosen = (index >= first) & (index < first + count) & finite
+            kept = finite & ~chosen
             trial = np.where(chosen, np.interp(index, index[kept], window[kept]), window)
             # Squares, so that another spike nearby counts alike in every trial; a longer spike must be worth its length
             gain = float((curvature**2 - np.nan_to_num(_curvature(trial)) ** 2).sum()) / math.sqrt(count)

@@ -2,7 +2,7 @@
 
 from .oscillator import Oscillator, Response, gauss_times
 from .parameters import Dynamics, ParametricModel, StiffnessSeries, Torque, table_1
-from .stability import growth_rate, instability_speeds, scale_defects, stability_chart
+from .stability import growth_rate, scale_defects, stability_chart
 from .steady_state import SteadyState, line_pairs, steady_state
 
 __all__ = [
@@ -15,7 +15,6 @@ __all__ = [
     "Torque",
     "gauss_times",
     "growth_rate",
-    "instability_speeds",
     "line_pairs",
     "scale_defects",
     "stability_chart",

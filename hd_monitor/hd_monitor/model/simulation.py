@@ -1,4 +1,4 @@
-"""The model's motion in time, along any motion of the output: a thin use of the oscillator for whole records."""
+"""The model's vibration in time, along any motion of the output."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -91,23 +91,15 @@ def simulate(model: ParametricModel, output_angle: AngleFunction, *, duration: f
         raise ParameterError(f"{duration!r} s at {rate!r} Hz hold no samples; give a duration and a rate above 0")
     steps = max(1, round(duration * rate) - 1)
     times = np.arange(steps + 1) / rate
-    between = output_angle(gauss_times(times))
-    inertia = model.dynamics.inertia
+    angle, between = output_angle(times), output_angle(gauss_times(times))
     oscillator = Oscillator(model.dynamics, model.stiffness_fluctuation(between), 1.0 / rate)
-    angle = output_angle(times)
     start = (float(model.static_deflection(angle[0])), 0.0)
-    displacement, velocity = oscillator.respond(model.torque_at(between) / inertia, start)
-    omega = model.dynamics.angular_frequency
-    acceleration = (
-        model.torque_at(angle) / inertia
-        - 2.0 * model.dynamics.damping_ratio * omega * velocity
-        - omega**2 * (1.0 + model.stiffness_fluctuation(angle)) * displacement
-    )
+    displacement, velocity = oscillator.respond(model.torque_at(between) / model.dynamics.inertia, start)
     return TimeResponse(
         rate=rate,
         times=times,
         output_angle=angle,
         displacement=displacement,
         velocity=velocity,
-        acceleration=acceleration,
+        acceleration=model.acceleration(angle, displacement, velocity),
     )

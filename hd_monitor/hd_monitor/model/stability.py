@@ -18,7 +18,7 @@ def growth_rate(model: ParametricModel, speed_rpm: float) -> float:
     """Exponential growth rate [1/s] of free vibration at a constant wave-generator speed [rpm]; unstable above 0.
 
     The stiffness is exactly periodic: after 1/gcd(z1, z2) of an output revolution (40 wave-generator revolutions for
-    160/162) it starts anew, so the eigenvalues of the transition matrix over that period decide.
+    160/162) it repeats, so the eigenvalues of the transition matrix over that period decide.
 
     Raises
     ------
@@ -40,12 +40,6 @@ def growth_rate(model: ParametricModel, speed_rpm: float) -> float:
     return (math.log(largest) + logarithm) / period
 
 
-def instability_speeds(model: ParametricModel, speeds_rpm: npt.ArrayLike) -> FloatArray:
-    """Those of `speeds_rpm` [rpm] at which the model is parametrically unstable, in their order."""
-    speeds = np.atleast_1d(np.asarray(speeds_rpm, dtype=np.float64))
-    return np.asarray([speed for speed in speeds if speed != 0.0 and growth_rate(model, float(speed)) > 0.0])
-
-
 def stability_chart(model: ParametricModel, speeds_rpm: npt.ArrayLike, scales: npt.ArrayLike) -> FloatArray:
     """Growth rates [1/s] over speed and defect size: a Strutt-like chart.
 
@@ -61,29 +55,21 @@ def stability_chart(model: ParametricModel, speeds_rpm: npt.ArrayLike, scales: n
     -------
     ndarray, shape (sizes, speeds)
     """
-    speeds = np.atleast_1d(np.asarray(speeds_rpm, dtype=np.float64))
-    rates = [
-        [growth_rate(scaled, float(speed)) for speed in speeds]
-        for scaled in (scale_defects(model, float(s)) for s in np.atleast_1d(scales))
-    ]
-    return np.asarray(rates)
+    models = [scale_defects(model, float(scale)) for scale in np.asarray(scales)]
+    return np.array([[growth_rate(scaled, float(speed)) for speed in np.asarray(speeds_rpm)] for scaled in models])
 
 
 def scale_defects(model: ParametricModel, factor: float) -> ParametricModel:
     """Return the model with every stiffness index β multiplied by `factor`."""
-    return replace(
-        model,
-        circular_spline=_scaled(model.circular_spline, factor),
-        flexspline=_scaled(model.flexspline, factor),
+    circular_spline, flexspline = (
+        StiffnessSeries(tuple(b * factor for b in series.beta), series.phase)
+        for series in (model.circular_spline, model.flexspline)
     )
-
-
-def _scaled(series: StiffnessSeries, factor: float) -> StiffnessSeries:
-    return StiffnessSeries(tuple(b * factor for b in series.beta), series.phase)
+    return replace(model, circular_spline=circular_spline, flexspline=flexspline)
 
 
 def _product(matrices: FloatArray) -> tuple[FloatArray, float]:
-    """Product M[n-1]···M[0] as a matrix and the logarithm of a factor taken out of it, so that nothing underflows."""
+    """Product M[n-1]···M[0] as a matrix and the logarithm of a common factor, so that nothing underflows."""
     logarithms = np.zeros(matrices.shape[0])
     while matrices.shape[0] > 1:
         if matrices.shape[0] % 2:

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import ComplexArray, FloatArray, IntArray
+from ..arrays import ComplexArray, IntArray
 from ..errors import ParameterError
 from ..reducer import WAVE_GENERATOR_LOBES, LinePair
 from .parameters import ParametricModel
@@ -30,11 +30,6 @@ class SteadyState:
     orders: IntArray
     displacement: ComplexArray
     output_speed: float
-
-    @property
-    def frequencies(self) -> FloatArray:
-        """Frequency [Hz] of every line, negative ones included, shape (lines,)."""
-        return np.asarray(self.orders * self.output_speed / (2.0 * np.pi))
 
     @property
     def acceleration(self) -> ComplexArray:
@@ -94,7 +89,7 @@ def steady_state(
     -----
     In the frequency domain the product k(t)·θ(t) is a convolution of line coefficients, so eq. 3 becomes one complex
     linear system over the lines. The solution exists for an unstable setting too, but no real machine settles on it:
-    ask :func:`hd_monitor.model.stability.growth_rate` first.
+    check :func:`hd_monitor.model.stability.growth_rate` first.
     """
     if not np.isfinite(speed_rpm) or speed_rpm == 0.0:
         raise ParameterError(f"speed = {speed_rpm!r} rpm has no line frequencies; give a speed other than 0")

@@ -85,6 +85,15 @@ def test_spikes_in_a_row_and_at_the_ends_are_left_out(strokes: np.ndarray, place
     assert left_out(spiked) == places.tolist()
 
 
+def test_spikes_beside_a_missing_sample_are_left_out(strokes: np.ndarray) -> None:
+    spoilt = strokes[4000:5000].copy()
+    spoilt[[500, 501]] = np.nan, 100.0 * strokes.std()
+    spoilt[504] = 100.0 * strokes.std()
+    screened = screen(spoilt)
+    assert (screened.not_finite, screened.spikes) == (1, 2)
+    assert np.flatnonzero(np.isnan(screened.values)).tolist() == [500, 501, 504]
+
+
 def test_not_finite_values_are_left_out() -> None:
     values = np.sin(2 * np.pi * 56.0 * TIMES)
     values[[3, 500]] = np.nan, np.inf

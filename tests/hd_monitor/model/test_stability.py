@@ -13,7 +13,6 @@ from hd_monitor.model import (
     StiffnessSeries,
     gauss_times,
     growth_rate,
-    instability_speeds,
     scale_defects,
     stability_chart,
     table_1,
@@ -108,11 +107,6 @@ def test_fast_decay_does_not_underflow():
     """At a low speed a period is long, and the transition matrix smaller than any number."""
     damped = model(flexspline=(0.05,), damping_ratio=0.3)
     assert growth_rate(damped, 20.0) == pytest.approx(-0.3 * math.tau * 55, rel=1e-3)
-
-
-def test_instability_speeds_are_picked_out_in_order():
-    speeds = instability_speeds(model(circular_spline=(0.14,)), [200.0, 0.0, 3300.0, 1000.0, 3290.0])
-    assert speeds.tolist() == [3300.0, 3290.0]
 
 
 def test_the_chart_is_the_growth_rate_at_each_place():
