@@ -2,8 +2,8 @@
 
 Messages of one topic nearly always have the same layout: the same frame name, the same joints, the same block length.
 So one message is parsed as a template, and all others of its length whose layout bytes agree with it are read by
-numpy at once; whatever differs becomes the next template. A message that cannot be read costs a complaint, not the
-batch.
+numpy at once; whatever differs becomes the next template. A message that cannot be read becomes a fault and does not
+spoil the batch.
 """
 
 from collections.abc import Callable, Sequence
@@ -28,11 +28,11 @@ class Samples(NamedTuple):
     angular: FloatArray
     """Angular acceleration [rad/s²] of an AccelStamped, angular velocity [rad/s] of an Imu; shape (N, 3)."""
     faults: tuple[str, ...]
-    """One complaint for each message that could not be read."""
+    """The reason for each message that could not be read."""
 
 
 class JointStates(NamedTuple):
-    """Consecutive JointState messages with the same joints; NaN stands where a message carries no such array."""
+    """Consecutive JointState messages with the same joints; NaN where a message carries no such array."""
 
     place: IntArray
     """Positions of the messages in the batch, rising, shape (N,)."""
@@ -169,7 +169,7 @@ def decode_joint_states(messages: Sequence[bytes]) -> tuple[list[JointStates], l
     Returns
     -------
     groups : list of JointStates
-        One for each set of joint names (and arrays present); their `place` tells the messages' order.
+        One for each set of joint names (and arrays present); their `place` gives the messages' order.
     faults : list of Fault
         The messages that could not be read.
     """

@@ -1,4 +1,4 @@
-"""Where the values of a serialised (CDR) message stand, found on one message and held against many at once."""
+"""Places of the values in a serialised (CDR) message, found on one message and compared with many at once."""
 
 import struct
 from collections.abc import Callable, Iterator, Sequence
@@ -27,7 +27,7 @@ class Fault(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Layout[T]:
-    """Where the values of a message stand (`record`), and which of its bytes decide that (`decisive`)."""
+    """Places of a message's values (`record`), and the bytes that decide them (`decisive`)."""
 
     record: np.dtype[np.void]
     decisive: BoolArray
@@ -35,7 +35,7 @@ class Layout[T]:
 
 
 class Template:
-    """Walks once through a message and notes where its values stand.
+    """Walks once through a message and notes the places of its values.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ class Template:
     Raises
     ------
     LayoutError
-        Here and in every method, if the message is no plain CDR or ends before its contents do.
+        Here and in every method, if the message is not plain CDR or ends before its contents do.
     """
 
     def __init__(self, message: bytes) -> None:
@@ -77,7 +77,7 @@ class Template:
         return int(struct.unpack_from(f"{self._order}I", self._message, start)[0])
 
     def text(self, *, decisive: bool = False) -> str:
-        """Read a string; its length always decides the layout, its letters if asked."""
+        """Read a string; its length always decides the layout, its letters if `decisive`."""
         length = self.count()
         start = self._take(length, 1)
         if decisive:
@@ -99,7 +99,7 @@ class Template:
         self.text()
 
     def layout[T](self, content: T) -> Layout[T]:
-        """Return what was noted, with what the message says by its layout alone."""
+        """Return the layout noted, with the content that follows from the layout alone."""
         record = np.dtype(
             {
                 "names": [name for name, _, _ in self._fields],

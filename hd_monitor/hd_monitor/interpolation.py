@@ -35,7 +35,7 @@ def cubics(
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Coefficients of :func:`hermite`'s polynomials in the place, the constant ones first.
 
-    They are worth their while where many places lie in each interval.
+    Cheaper where many places lie in each interval.
     """
     rise = last - first
     return first, first_slope, 3.0 * rise - 2.0 * first_slope - last_slope, first_slope + last_slope - 2.0 * rise

@@ -13,7 +13,7 @@ WAVE_GENERATOR_LOBES = 2
 
 
 class Mount(StrEnum):
-    """Which of the two splines stands still."""
+    """The spline that stands still."""
 
     CIRCULAR_SPLINE_FIXED = "circular_spline_fixed"
     FLEXSPLINE_FIXED = "flexspline_fixed"
@@ -65,7 +65,7 @@ class Reducer:
     mount: Mount = Mount.CIRCULAR_SPLINE_FIXED
 
     def __post_init__(self) -> None:
-        """Refuse what cannot turn."""
+        """Refuse impossible geometries."""
         for name in ("flexspline_teeth", "circular_spline_teeth"):
             value: object = getattr(self, name)
             if isinstance(value, bool) or not isinstance(value, Real) or not float(value).is_integer():
@@ -73,7 +73,7 @@ class Reducer:
             object.__setattr__(self, name, round(float(value)))
         z1, z2 = self.flexspline_teeth, self.circular_spline_teeth
         if z1 < 1:
-            raise GeometryError(f"flexspline_teeth = {z1} is no gear; give the number of teeth of the flexspline")
+            raise GeometryError(f"flexspline_teeth = {z1} is not a number of teeth; count those of the flexspline")
         if z2 <= z1:
             raise GeometryError(
                 f"circular_spline_teeth = {z2} is not above flexspline_teeth = {z1}: the flexspline runs inside the "
@@ -86,8 +86,8 @@ class Reducer:
             )
         if z2 - z1 > z1 // 2:
             raise GeometryError(
-                f"the tooth difference {z2} - {z1} = {z2 - z1} asks the flexspline to deflect by more than a quarter "
-                "of its size, which no flexspline survives; check the tooth numbers (the difference is usually 2)"
+                f"the tooth difference {z2} - {z1} = {z2 - z1} requires the flexspline to deflect by more than a "
+                "quarter of its size, which no flexspline survives; check the tooth numbers (the difference is usually 2)"
             )
         try:
             object.__setattr__(self, "mount", Mount(self.mount))

@@ -1,4 +1,4 @@
-"""Which period of the message stamps is complete on all inputs and can be assessed next."""
+"""The next period of the message stamps that is complete on all inputs."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -22,7 +22,7 @@ class Timeline:
     inputs : sequence of StampedBuffer
         The inputs that an assessment needs.
     period, timeout : int
-        Length of a period and silence after which an input is no longer waited for [ns].
+        Length of a period, and silence after which the others stop waiting for an input [ns].
     """
 
     def __init__(self, inputs: Sequence[StampedBuffer], period: int, timeout: int) -> None:

@@ -78,7 +78,7 @@ def stamp(head: tuple[int, int, str]) -> int:
 @pytest.mark.parametrize(("write", "read"), [(accel, cdr.decode_accel_stamped), (imu, cdr.decode_imu)])
 @settings(max_examples=60)
 @given(rows=st.lists(st.tuples(headers, triples, triples, st.booleans()), max_size=8))
-def test_vectors_come_back_in_order_whatever_frames_and_byte_orders_are_mixed(
+def test_vectors_keep_their_order_for_mixed_frames_and_byte_orders(
     write: Any, read: Any, rows: list[Any]
 ) -> None:
     samples = read([write(head, linear, angular, little_endian=little) for head, linear, angular, little in rows])
@@ -142,7 +142,7 @@ def test_multi_arrays_come_back_with_their_layout(rows: list[Any]) -> None:
         np.testing.assert_array_equal(seen[place][2], data)
 
 
-def test_a_message_cut_off_anywhere_is_a_fault_and_costs_no_other_message() -> None:
+def test_a_truncated_message_is_a_fault_and_spoils_no_other() -> None:
     head = (5, 6, "sensor")
     writers: list[tuple[bytes, Any]] = [
         (accel(head, (1, 2, 3), (4, 5, 6)), cdr.decode_accel_stamped),
@@ -179,7 +179,7 @@ def test_arrays_of_another_length_than_the_names_are_a_fault() -> None:
     assert "2 names but 1 values of position" in faults[0].reason
 
 
-def test_nothing_gives_empty_arrays() -> None:
+def test_no_messages_give_empty_arrays() -> None:
     assert cdr.decode_accel_stamped([]).stamps.shape == (0,)
     assert cdr.decode_accel_stamped([]).linear.shape == (0, 3)
     assert cdr.decode_joint_states([]) == ([], [])
@@ -187,7 +187,7 @@ def test_nothing_gives_empty_arrays() -> None:
 
 
 @pytest.mark.ros
-def test_what_the_middleware_serialises_is_read() -> None:
+def test_messages_of_the_middleware_are_read() -> None:
     from geometry_msgs.msg import AccelStamped
     from rclpy.serialization import serialize_message
     from sensor_msgs.msg import JointState

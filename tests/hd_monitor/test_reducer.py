@@ -1,4 +1,4 @@
-"""Geometry: orders, line frequencies and travel, against the paper and against counting."""
+"""Geometry: orders, line frequencies and travel, against the paper and by counting."""
 
 import math
 from fractions import Fraction
@@ -118,8 +118,8 @@ def test_a_mount_by_its_word():
         ({"flexspline_teeth": 160, "circular_spline_teeth": 160}, "not above"),
         ({"circular_spline_teeth": 163}, "odd"),
         ({"circular_spline_teeth": 300}, "no flexspline survives"),
-        ({"flexspline_teeth": 0, "circular_spline_teeth": 2}, "no gear"),
-        ({"flexspline_teeth": -160}, "no gear"),
+        ({"flexspline_teeth": 0, "circular_spline_teeth": 2}, "not a number of teeth"),
+        ({"flexspline_teeth": -160}, "not a number of teeth"),
         ({"flexspline_teeth": 160.5}, "whole"),
         ({"flexspline_teeth": math.nan}, "whole"),
         ({"flexspline_teeth": math.inf}, "whole"),

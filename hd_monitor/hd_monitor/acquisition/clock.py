@@ -10,7 +10,7 @@ from ..arrays import FloatArray, IntArray
 
 _EVEN = 0.02  # of a period: single differences of stamps as even as this count the missing samples without fail
 _DISORDERED = 0.2  # of a period: sorted stamps more uneven than this were not sampled in that order
-_SHARP = 0.17  # of a period: stamps nearer to the grid than this tell their own place; mere rounding leaves 0.29
+_SHARP = 0.17  # of a period: stamps nearer to the grid than this show their own place; rounding alone leaves 0.29
 _OUT_OF_PLACE = 0.55  # of a period: a stamp further from its place belongs to another one
 _REFINEMENTS = 4
 _SMOOTHING = 20  # samples over which heavy jitter is averaged before missing samples are counted
@@ -31,7 +31,7 @@ class Clock(NamedTuple):
     jitter : float
         Standard deviation of the stamps about the grid [s].
     duplicates : int
-        Samples left out because their stamp stood there before.
+        Samples left out because their stamp occurred before.
     """
 
     order: npt.NDArray[np.intp]
@@ -55,12 +55,12 @@ def recover_clock(times: FloatArray, period: float | None = None) -> Clock | Non
     Returns
     -------
     Clock or None
-        None if there are fewer than 3 different stamps: no clock can be told.
+        None if there are fewer than 3 different stamps.
 
     Notes
     -----
     Samples that arrive in another order than their stamps were either reordered on the way (sorting makes the stamps
-    even) or have jittering stamps (sorting would scramble the signal). Sorting is done where it leaves even stamps.
+    even) or have jittering stamps (sorting would scramble the signal). They are sorted where that leaves even stamps.
     """
     order, duplicates = np.arange(times.size), 0
     t, steps = times, times[1:] - times[:-1]
@@ -90,7 +90,7 @@ def recover_clock(times: FloatArray, period: float | None = None) -> Clock | Non
     uneven = _unevenness(steps)
     number = np.concatenate([[0], np.cumsum(np.maximum(np.rint(steps / typical).astype(np.int64), 1))])
     if uneven > _EVEN:
-        # With a line known, each stamp tells its own place, more sharply than a difference of two stamps does
+        # With a line known, a single stamp shows its place more sharply than a difference of two stamps
         number = _settle(number, t)
         start, fitted = _line(number, t)
         apart = np.abs(t - start - fitted * number) / fitted
@@ -133,8 +133,8 @@ def _unevenness(steps: FloatArray) -> float:
 def _count_through_jitter(t: FloatArray, period: float, *, exact: bool) -> IntArray:
     """Number samples whose stamps jitter by a good part of a period: missing ones show in the smoothed excess only.
 
-    The excess of the stamps over an even count is a whole number everywhere, were it not for the jitter. Averaged, it
-    lies near whole numbers for the true period only: among the periods that the guess allows, that one is taken.
+    Without jitter, the excess of the stamps over an even count would be a whole number everywhere. Averaged, it lies
+    near whole numbers for the true period only: of the periods that the guess allows, that one is taken.
     """
     width = min(2 * _SMOOTHING + 1, t.size)
     count = np.arange(t.size)

@@ -27,10 +27,10 @@ class Motion(NamedTuple):
 
 
 def even_stamps(times: FloatArray, rows: FloatArray) -> FloatArray:
-    """Take jitter off the stamps of joint states, where the joint's own motion proves that it is jitter.
+    """Remove jitter from the stamps of joint states where the joint's own motion proves that it is jitter.
 
-    Drivers sample evenly but often stamp in passing. Position and velocity tell which of the two clocks is true: the
-    one on which the position moves as the velocity says. At 3000 rpm a jitter of 1 ms would shift the lines' phase by
+    Drivers sample evenly but often stamp unevenly. Position and velocity show which of the two clocks is true: the
+    one on which the position changes as the velocity says. At 3000 rpm a jitter of 1 ms would shift the lines' phase by
     half a radian.
 
     Parameters
@@ -65,7 +65,7 @@ def even_stamps(times: FloatArray, rows: FloatArray) -> FloatArray:
 class MotionTrack:
     """Joint states as a function of time, fed a stretch at a time.
 
-    The angle is unwrapped: a joint that reports -π after π is taken to go on turning.
+    The angle is unwrapped: a joint that reports -π after π is assumed to go on turning.
     """
 
     def __init__(self) -> None:
@@ -94,10 +94,7 @@ class MotionTrack:
         return good
 
     def forget(self, time: float) -> None:
-        """Drop what is not needed to interpolate from `time` [s] on, and the messages of then and later.
-
-        These were only lent to close an interval, and come again.
-        """
+        """Drop what interpolation from `time` [s] on does not need, and the messages from then on: they come again."""
         last = int(self._times.searchsorted(time))
         first = max(0, last - 2)
         self._times, self._rows = self._times[first:last], self._rows[first:last]

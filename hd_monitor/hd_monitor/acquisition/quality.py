@@ -1,4 +1,4 @@
-"""Counters of what is wrong with the incoming data: shown in every status, never hidden."""
+"""Counters of faults in the incoming data, shown in every status."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""What acquisition hands to the analyses: contiguous stretches of vibration with the motion they belong to."""
+"""Input of the analyses: contiguous stretches of vibration with their motion, and joint states."""
 
 from dataclasses import dataclass
 

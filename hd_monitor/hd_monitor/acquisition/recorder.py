@@ -1,4 +1,4 @@
-"""Joins vibration and motion of one period into records on an even grid, and counts what was wrong with them."""
+"""Assembles vibration and motion of one period into records on an even grid, and counts their faults."""
 
 import itertools
 import math
@@ -17,9 +17,9 @@ from .screening import screen
 from .stream import Samples
 
 _NS = 1e-9
-_REPLACED = ("rate", "last_fault")  # of the quality, what is no counter
+_REPLACED = ("rate", "last_fault")  # of the quality: not counters
 _SHORTEST_RECORD = 8  # samples
-_STANDING = 1e-3  # rad of output travel in a period, below which a constant signal is no sign of a stuck sensor
+_STANDING = 1e-3  # rad of output travel in a period, below which a constant signal does not mean a stuck sensor
 
 
 class AssembledPeriod(NamedTuple):
@@ -68,7 +68,7 @@ class Recorder:
         self.torque_source = "unknown"
 
     def cut(self) -> None:
-        """Start anew: what follows belongs to another time base."""
+        """Forget the motion and the grid: the next samples have another time base."""
         self._track.clear()
         self._grid = None
         self._joined = False
@@ -122,9 +122,9 @@ class Recorder:
             order = np.argsort(stamps, kind="stable")
             stamps, rows = stamps[order], rows[order]
         times = _seconds(stamps, epoch)
-        lent = _seconds(following.stamps, epoch)
+        closing = _seconds(following.stamps, epoch)
         taken = self._track.extend(
-            np.concatenate([even_stamps(times, rows), lent]), np.concatenate([rows, following.values])
+            np.concatenate([even_stamps(times, rows), closing]), np.concatenate([rows, following.values])
         )
         dropped = stamps.size - int(np.count_nonzero(taken[: stamps.size]))
         self.count(motion_messages=stamps.size - dropped, motion_faults=dropped)

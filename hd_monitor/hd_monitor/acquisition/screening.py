@@ -1,4 +1,4 @@
-"""Screening of vibration samples: values that are no vibration are left out and counted, never used in silence."""
+"""Screening of vibration samples: bad values are left out and counted, never used silently."""
 
 import math
 from typing import NamedTuple
@@ -64,7 +64,7 @@ def screen(values: FloatArray, *, full_scale: float = 0.0, turning: bool = True)
 
 
 def _flat_runs(values: FloatArray, equal: BoolArray, *, tops: bool) -> tuple[Places, Places]:
-    """Places of flat tops, if asked for, and of values that are stuck."""
+    """Places of flat tops, with `tops`, and of stuck values."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], equal, [False]]).astype(np.int8)))
     flat, stuck = np.zeros(values.size, dtype=np.bool_), np.zeros(values.size, dtype=np.bool_)
     high, low = np.nanmax(values), np.nanmin(values)

@@ -17,12 +17,12 @@ from ..errors import ParameterError
 from .parameters import Dynamics
 
 GAUSS_OFFSETS = (0.5 - np.sqrt(3.0) / 6.0, 0.5 + np.sqrt(3.0) / 6.0)
-"""Places of the two Gauss-Legendre points in a step, as fractions of it; coefficients are wanted there."""
+"""Places of the two Gauss-Legendre points in a step, as fractions of it; coefficients are evaluated there."""
 
 _COMMUTATOR = np.sqrt(3.0) / 12.0
 _LARGEST_PHASE_STEP = 1.0  # rad of ωn per step: beyond it the Magnus series is no longer accurate
 _SERIES_REMAINDER = 1e-17
-_CACHED = 32_768  # numbers: of the sums that are worked on at once
+_CACHED = 32_768  # numbers in the sums processed at once
 _LARGEST_CONDITION = 11.5  # natural logarithm of the condition of a block's matrix: five of sixteen digits at worst
 
 
@@ -71,7 +71,7 @@ class Oscillator:
 
     Examples
     --------
-    A free oscillation of 1 Hz is back where it started after 1 s:
+    A free oscillation of 1 Hz returns to its start after 1 s:
 
     >>> import numpy as np
     >>> still = Oscillator(Dynamics(natural_frequency=1.0, damping_ratio=0.0), np.zeros((2, 100)), 0.01)
@@ -106,8 +106,8 @@ class Oscillator:
         exponent[1, 0] = h * (0.5 * (a1 + a2) + damping * skew)
         exponent[1, 1] = h * damping - w00
         self._transition, input_map = _exponential_and_phi(exponent)
-        # Vector part of the exponent: h (b1 + b2)/2 + (√3/12) h² (A2 b1 - A1 b2) with b = (0, u). The input map takes
-        # it to what a step adds to the state: a weight for u at either Gauss point, for either component.
+        # Vector part of the exponent: h (b1 + b2)/2 + (√3/12) h² (A2 b1 - A1 b2) with b = (0, u). The input map turns
+        # it into a step's contribution to the state: a weight for u at either Gauss point, for either component.
         slope = _COMMUTATOR * h * h
         parts = [(sign * omega * slope, 0.5 * h + sign * damping * slope) for sign in (1.0, -1.0)]
         self._weights = np.stack([input_map[:, 0] * first + input_map[:, 1] * second for first, second in parts])

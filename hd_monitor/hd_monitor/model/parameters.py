@@ -15,7 +15,7 @@ from ..reducer import WAVE_GENERATOR_LOBES, Reducer
 def _finite(name: str, value: float, *, above: float = -math.inf, at_least: float = -math.inf) -> None:
     if not math.isfinite(value) or value <= above or value < at_least:
         bound = f"above {above:g}" if above > -math.inf else f"at least {at_least:g}"
-        raise ParameterError(f"{name} = {value!r} describes no reducer; it must be a finite number {bound}")
+        raise ParameterError(f"{name} = {value!r} is impossible for a reducer; it must be a finite number {bound}")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -58,7 +58,7 @@ class Dynamics:
         return self.inertia * self.angular_frequency**2
 
     def receptance(self, frequency: npt.ArrayLike) -> ComplexArray:
-        """Normalised frequency response ωn² / (ωn² - ω² + 2jζωnω) at `frequency` [Hz]; 1 at rest."""
+        """Normalised frequency response ωn² / (ωn² - ω² + 2jζωnω) at `frequency` [Hz]; 1 at 0 Hz."""
         ratio = np.asarray(frequency, dtype=np.float64) / self.natural_frequency
         return np.asarray(1.0 / (1.0 - ratio**2 + 2j * self.damping_ratio * ratio))
 

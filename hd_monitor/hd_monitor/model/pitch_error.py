@@ -23,8 +23,8 @@ class PitchErrors:
     Parameters
     ----------
     accumulated : sequence of float
-        Error of each tooth's place against an ideal division, along the pitch circle [m], one a tooth; its mean is
-        a matter of where one starts to count and has no effect.
+        Error of each tooth's place against an ideal division, along the pitch circle [m], one a tooth; its mean
+        depends on the first tooth counted and has no effect.
 
     Raises
     ------
@@ -39,8 +39,8 @@ class PitchErrors:
         values = tuple(float(x) for x in self.accumulated)
         if len(values) < 4 or not all(np.isfinite(values)):
             raise ParameterError(
-                f"{len(values)} accumulated pitch errors describe no spline; give one finite value in metres for "
-                "each tooth"
+                f"{len(values)} accumulated pitch errors are not those of a spline; give one finite value in metres "
+                "for each tooth"
             )
         object.__setattr__(self, "accumulated", values)
 
@@ -112,8 +112,8 @@ class PitchErrors:
         """
         if not (np.isfinite(sensitivity) and sensitivity >= 0.0):
             raise ParameterError(
-                f"sensitivity = {sensitivity!r} 1/m is no stiffening; give the relative stiffness rise per "
-                "metre, 0 or more"
+                f"sensitivity = {sensitivity!r} 1/m is not a stiffening by preload; give the relative stiffness rise "
+                "per metre, 0 or more"
             )
         angles = np.pi * np.arange(_ANGLES) / _ANGLES
         relative = 1.0 + sensitivity * self.interference(angles)

@@ -41,15 +41,15 @@ class StaticTestBed:
     dial_resolution: float = 1e-6
 
     def __post_init__(self) -> None:
-        """Refuse a bed that measures nothing."""
+        """Refuse impossible values."""
         for name in ("torque", "load_steps", "force_arm", "dial_arm"):
             value = getattr(self, name)
             if not (np.isfinite(value) and value > 0):
-                raise ParameterError(f"{name} = {value!r} makes no test bed; give a value above 0")
+                raise ParameterError(f"{name} = {value!r} is not possible for a test bed; give a value above 0")
         for name in ("force_resolution", "dial_resolution"):
             value = getattr(self, name)
             if not (np.isfinite(value) and value >= 0.0):
-                raise ParameterError(f"{name} = {value!r} is no resolution; give 0 for ideal, or a value above it")
+                raise ParameterError(f"{name} = {value!r} is not a resolution; give 0 for an ideal instrument, or more")
 
     def measure(self, model: ParametricModel, wave_generator_angles: npt.ArrayLike) -> FloatArray:
         """Measure the stiffness at each position.
@@ -111,7 +111,7 @@ def fit_stiffness(
 ) -> StiffnessFit:
     """Fit mean and harmonics to static stiffness readings by least squares.
 
-    Readings over a wave-generator revolution or two cannot tell the splines' lines apart (that takes half an output
+    Readings over a wave-generator revolution or two do not separate the splines' lines (that takes half an output
     revolution); the fit gives their sum.
 
     Parameters
@@ -128,7 +128,7 @@ def fit_stiffness(
     Raises
     ------
     ParameterError
-        If the positions are too few or too evenly folded to tell the harmonics apart.
+        If the positions are too few or too evenly folded to separate the harmonics.
     """
     phi = np.asarray(wave_generator_angles, dtype=np.float64)
     values = np.asarray(stiffness, dtype=np.float64)
@@ -139,7 +139,7 @@ def fit_stiffness(
     solution, _, rank, _ = np.linalg.lstsq(matrix, values, rcond=1e-9)
     if rank < matrix.shape[1]:
         raise ParameterError(
-            f"{phi.size} positions cannot tell {harmonics} harmonics apart; measure at more positions or fit fewer"
+            f"{phi.size} positions do not separate {harmonics} harmonics; measure at more positions or fit fewer"
         )
     mean = float(solution[0])
     pairs = solution[1:].reshape(-1, 2) / mean
@@ -147,5 +147,5 @@ def fit_stiffness(
 
 
 def _read(value: FloatArray, resolution: float) -> FloatArray:
-    """Return what an instrument of this resolution shows."""
+    """Return the reading of an instrument of this resolution."""
     return value if resolution == 0.0 else np.rint(value / resolution) * resolution

@@ -58,7 +58,7 @@ class PitchErrorCase(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Case:
-    """A reducer with its defects, and what is to be shown of it.
+    """A reducer with its defects, and the settings of its figures.
 
     Attributes
     ----------
@@ -67,7 +67,7 @@ class Case:
     sensor_radius : float
         [m]
     settings : JointSettings
-        What a monitor of this reducer would be told; it knows nothing of the defects.
+        Of a monitor of this reducer; the defects are not among them.
     speed : float
         Wave-generator speed of the spectra [rpm].
     speeds : Range
@@ -79,7 +79,7 @@ class Case:
     static_step : float
         Angle between two positions of the static test [rad of the wave generator].
     pitch_error : PitchErrorCase or None
-        What the circular spline's fluctuation in `model` comes from, if not given directly.
+        Source of the circular spline's fluctuation in `model`, if not given directly.
     ignored : tuple of str
         Names in a file shared with others that mean nothing here.
     """
@@ -127,7 +127,7 @@ def paper_file() -> Path:
     Raises
     ------
     HdMonitorError
-        If it is nowhere to be found.
+        If it is not installed.
     """
     here = Path(__file__)
     above = [*here.parents, *here.resolve().parents]
@@ -164,7 +164,7 @@ def load_own_case(path: Path) -> Case:
     Raises
     ------
     HdMonitorError
-        If the file or a value in it makes no sense, or no spline has a defect: there would be nothing to show.
+        If the file or a value in it is invalid, or no spline has a defect: nothing would vibrate.
     """
     content = read_file(path)
     shared = False

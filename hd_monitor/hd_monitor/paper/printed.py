@@ -1,4 +1,4 @@
-"""What Gu, Tong, Huang and Li (2021) print: the only place where the paper's own numbers stand.
+"""Values printed by Gu, Tong, Huang and Li (2021); the paper's own numbers are kept here only.
 
 Nothing computed may come from here; figures compute from the cases (``config/paper.yaml``) and are held against this.
 """
@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 
 class Printed(NamedTuple):
-    """A printed value: where it stands, the value in `unit`, and its wording where it is more than a number."""
+    """A printed value: its place in the paper, the value in `unit`, and its wording where it is more than a number."""
 
     where: str
     value: float
@@ -50,7 +50,7 @@ INDEX_REDUCTION = Printed("section 6", 0.5, "", "half of the original fluctuatio
 
 
 class Contradiction(NamedTuple):
-    """A place where the paper contradicts itself, or leaves out what its result depends on, and what is done here."""
+    """A place where the paper contradicts itself or omits what its result depends on, and our convention."""
 
     where: str
     printed: str

@@ -1,4 +1,4 @@
-"""Reading named values from YAML, with a clear line for what is wrong."""
+"""Reading named values from YAML; errors are one clear line."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -12,13 +12,13 @@ from ..parameter import flatten
 
 
 def read_file(path: Path) -> dict[str, Any]:
-    """Read a YAML file with named values; anything else is refused in one line."""
+    """Read a YAML file with named values; refuse anything else in one line."""
     try:
         content = yaml.safe_load(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise HdMonitorError(f"{path} cannot be read: {error.strerror}; check the path") from None
     except (yaml.YAMLError, UnicodeDecodeError) as error:
-        raise HdMonitorError(f"{path} is no YAML: {' '.join(str(error).split())}") from None
+        raise HdMonitorError(f"{path} is not valid YAML: {' '.join(str(error).split())}") from None
     if not isinstance(content, Mapping):
         raise HdMonitorError(f"{path} holds no named values; see config/my_reducer.yaml for an example")
     return dict(content)
@@ -34,7 +34,7 @@ def merge(base: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
 
 
 class Reader:
-    """Takes values out of a flat mapping by their dotted names, so that what is left over can be refused."""
+    """Takes values out of a flat mapping by their dotted names; leftover names can then be refused."""
 
     def __init__(self, source: str, values: Mapping[str, Any]) -> None:
         self.source = source
@@ -59,11 +59,11 @@ class Reader:
         return tuple(float(v) for v in value)
 
     def triple(self, name: str, parts: tuple[str, str, str], default: tuple[float, float, float]) -> tuple[float, ...]:
-        """Take a range of three numbers that leads somewhere."""
+        """Take a range of three numbers, refused if empty or endless."""
         first, last, step = (self.number(f"{name}.{p}", d) for p, d in zip(parts, default, strict=True))
         if not (first <= last and step > 0.0):
             raise ParameterError(
-                f"{self.source}: {name} from {first:g} to {last:g} by {step:g} goes nowhere; "
+                f"{self.source}: {name} from {first:g} to {last:g} by {step:g} is empty or endless; "
                 f"{parts[1]} must not be below {parts[0]}, and {parts[2]} must be above 0"
             )
         return first, last, step

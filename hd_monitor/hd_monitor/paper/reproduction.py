@@ -1,4 +1,4 @@
-"""The list of what is reproduced, and the loop that computes it."""
+"""The list of exhibits, and the loop that computes them."""
 
 import time
 from collections.abc import Callable, Iterable, Sequence
@@ -23,7 +23,7 @@ from .exhibit import Exhibit
 
 
 class Entry[Given](NamedTuple):
-    """A figure, table or equation: its name, a few words, and the function that computes it from what is given."""
+    """A figure, table or equation: its name, a few words, and the function that computes it from its input."""
 
     id: str
     about: str
@@ -88,7 +88,7 @@ def compute[Given](
     Parameters
     ----------
     entries : sequence of Entry
-        `EXHIBITS` for the paper's, `own_reducer.FIGURES` for a reducer of one's own.
+        `EXHIBITS` for the paper's, `own_reducer.FIGURES` for a user's reducer.
     given : Cases or Case
         What they are computed from.
     only : iterable of str

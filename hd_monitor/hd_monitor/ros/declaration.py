@@ -1,4 +1,4 @@
-"""The core's parameters as ROS declares them: with description, unit and range, and checked by the core's own rules."""
+"""The core's parameters declared in ROS with description, unit and range, and checked by the core's own rules."""
 
 import math
 from collections.abc import Callable
@@ -12,7 +12,7 @@ from ..parameter import Parameter
 
 
 def declare(node: Node, name: str, value: Any, descriptor: ParameterDescriptor) -> None:
-    """Declare with a checked value what ROS may have declared already with the raw one."""
+    """Declare a parameter with its checked value, even if ROS declared it with the raw one."""
     if node.has_parameter(name):
         node.undeclare_parameter(name)
     node.declare_parameter(name, value, descriptor, ignore_override=True)

@@ -29,7 +29,7 @@ class JointChannel:
     joint : str
     settings : JointSettings
     several : bool
-        Whether the node watches several joints, so that the topics stand below the joint's name.
+        Whether the node watches several joints, so that the topics are below the joint's name.
     now : int
         The node's time [ns].
 
@@ -84,7 +84,7 @@ class JointChannel:
         if rate * seconds > most:
             self._node.get_logger().warning(
                 f"{self.joint}: input.queue_seconds = {seconds:g} s at input.expected_rate = {rate:g} Hz are more than "
-                f"the {most:g} messages that Fast DDS keeps: the queues hold {most / rate:.3g} s; ask for less, or "
+                f"the {most:g} messages that Fast DDS keeps: the queues hold {most / rate:.3g} s; reduce it, or "
                 "send blocks instead of single samples"
             )
 
@@ -95,7 +95,7 @@ class JointChannel:
         self._subscriptions = {}
 
     def destroy(self) -> None:
-        """Take back what is advertised."""
+        """Destroy the publishers."""
         self._node.destroy_lifecycle_publisher(self._zoom)
         self._node.destroy_lifecycle_publisher(self._rms)
 

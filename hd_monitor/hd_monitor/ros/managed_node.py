@@ -1,4 +1,4 @@
-"""What every managed node of the project does alike: come up by itself, refuse the impossible, end cleanly."""
+"""Common base of the project's managed nodes: they start by themselves, refuse bad parameters and end cleanly."""
 
 import signal
 import traceback
@@ -49,7 +49,7 @@ class ManagedNode(LifecycleNode):
     Attributes
     ----------
     finished : bool
-        Set by the node in one of its callbacks once it has no more to do; :func:`run` then ends.
+        Set by the node in one of its callbacks once its work is done; :func:`run` then ends.
     """
 
     def __init__(self, name: str, **options: Any) -> None:
@@ -76,11 +76,11 @@ class ManagedNode(LifecycleNode):
         return TransitionCallbackReturn.FAILURE
 
     def stop_work(self) -> None:
-        """Undo what activating built; called in any state, so twice at times."""
+        """Undo what activating built; called in any state, possibly twice."""
         raise NotImplementedError
 
     def dismantle(self) -> None:
-        """Undo what configuring built; called in any state, so twice at times."""
+        """Undo what configuring built; called in any state, possibly twice."""
         raise NotImplementedError
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
@@ -132,7 +132,7 @@ def run(name: str, make: Callable[[], ManagedNode], args: list[str] | None = Non
         node = make()
         executor = SingleThreadedExecutor()
         executor.add_node(node)
-        # Not spin_until_future_complete, which leaves a callback at its future with every turn and so grows for ever.
+        # Not spin_until_future_complete, which adds a callback to its future in every turn and so grows without bound.
         while rclpy.ok() and not node.finished:
             executor.spin_once()
     except (KeyboardInterrupt, ExternalShutdownException):
@@ -141,7 +141,7 @@ def run(name: str, make: Callable[[], ManagedNode], args: list[str] | None = Non
         get_logger(name).fatal(str(error))
         return UNUSABLE_INPUT
     finally:
-        # launch sends a second SIGINT, which must not cut the cleaning up short.
+        # launch sends a second SIGINT, which must not interrupt the clean-up.
         signal.signal(signal.SIGINT, signal.SIG_IGN)
         if node is not None:
             node.destroy_node()

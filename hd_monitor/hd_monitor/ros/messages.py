@@ -14,7 +14,7 @@ from ..orders.rms_curve import RmsCurve
 from ..orders.zoom import ZoomSpectrum
 
 LEVELS = (DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR)
-"""By number; the message wants bytes and takes an int without complaint, which then is garbage on the wire."""
+"""By number; the message needs bytes: it accepts an int too, but serialises it as garbage."""
 
 
 def diagnostic_status(status: Status, name: str) -> DiagnosticStatus:

@@ -1,4 +1,4 @@
-"""The joints' settings as ROS parameters: declared on the node, and checked by the core's own rules."""
+"""The joints' settings as ROS parameters, declared on the node and checked by the core's own rules."""
 
 import re
 from collections.abc import Callable, Sequence
@@ -18,7 +18,7 @@ JOINTS_DESCRIPTION = (
     "there (<joint>.reducer.serial); the values at the top level are common to all"
 )
 CHANGEABLE = "diagnosis."
-"""Parameters that begin so may be changed while the node runs; all others decide what it builds at its start."""
+"""Prefix of the parameters that may be changed while the node runs; all others take effect at its start only."""
 
 _TOPIC_WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 
@@ -29,7 +29,7 @@ class JointParameters:
     Parameters
     ----------
     node : Node
-        Created with ``automatically_declare_parameters_from_overrides=True``, so that misspelt ones are noticed.
+        Created with ``automatically_declare_parameters_from_overrides=True``, so that misspelt names are noticed.
     changed : callable
         Called with the new settings of every joint after a change at run time.
 

@@ -1,8 +1,8 @@
-"""How many messages a queue may hold: as many as are asked for, as far as the middleware keeps them.
+"""Depth of a queue: as requested, within what the middleware keeps.
 
 Fast DDS gives every reader and writer room for 5000 samples (``max_samples`` of its resource limits), whatever depth
-ROS asks for. A queue asked to be deeper does not drop its oldest message when it is full, as keep-last promises, but
-refuses the newest; asked for 5000 it does as promised.
+ROS requests. A full queue of a larger depth does not drop its oldest message, as keep-last promises, but refuses the
+newest; up to 5000 it keeps the promise.
 """
 
 import math

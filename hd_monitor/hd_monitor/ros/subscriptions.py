@@ -1,7 +1,7 @@
-"""Subscriptions that are polled: an executor's wait set costs far more than a small message.
+"""Subscriptions that are polled, since an executor's wait set costs far more than a small message.
 
 An executor spends more than half a millisecond of CPU on waking up for one message, so a topic of a thousand a second
-eats most of a core. Here the subscription never enters the wait set; its queue, seconds deep, is emptied from a timer
+takes most of a core. Here the subscription never enters the wait set; its queue, seconds deep, is emptied from a timer
 for a few microseconds a message, and the messages stay serialised until numpy decodes them all at once.
 """
 
@@ -34,7 +34,7 @@ class PolledGroup(CallbackGroup):
 
 
 class DrainedSubscription:
-    """A subscription that hands over its queue of serialised messages when asked.
+    """A subscription whose queue of serialised messages is taken on request.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ class DrainedSubscription:
         self.topic: str = self._subscription.topic_name
 
     def drain(self) -> list[bytes]:
-        """Take what is in the queue, at most one queue's depth at a time."""
+        """Take the queue's messages, at most one queue's depth at a time."""
         messages: list[bytes] = []
         handle = self._subscription.handle
         with handle:

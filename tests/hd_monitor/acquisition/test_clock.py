@@ -1,4 +1,4 @@
-"""The recovered clock is even, keeps every sample in its place and does not mind jitter, loss or disorder."""
+"""The recovered clock is even, keeps every sample in its place and tolerates jitter, loss and disorder."""
 
 import numpy as np
 import pytest
@@ -83,5 +83,5 @@ def test_a_hole_of_seconds_keeps_its_length() -> None:
 
 
 @pytest.mark.parametrize("times", [[], [1.0], [1.0, 1.0, 1.0, 1.0], [1.0, 2.0]])
-def test_no_clock_in_too_few_stamps(times: list[float]) -> None:
+def test_too_few_stamps_give_no_clock(times: list[float]) -> None:
     assert recover_clock(np.array(times)) is None

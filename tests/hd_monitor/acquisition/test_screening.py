@@ -46,7 +46,7 @@ def test_vibration_passes_untouched(frequency: float, amplitude: float, noise: f
 
 
 @given(places=st.sets(st.integers(2, 330), min_size=1, max_size=8), sign=st.sampled_from([-1.0, 1.0]))
-def test_spikes_are_found_and_nothing_else(places: set[int], sign: float) -> None:
+def test_only_spikes_are_found(places: set[int], sign: float) -> None:
     values = np.sin(2 * np.pi * 56.0 * TIMES) + np.random.default_rng(1).normal(0.0, 0.1, TIMES.size)
     where = 3 * np.array(sorted(places))
     values[where] += sign * 20.0
@@ -66,7 +66,7 @@ def test_strokes_through_the_resonance_pass_untouched(strokes: np.ndarray) -> No
 
 
 @pytest.mark.parametrize("size", [3.0, 10.0, 30.0])
-def test_of_strokes_the_spikes_are_left_out_and_nothing_else(strokes: np.ndarray, size: float) -> None:
+def test_only_the_spikes_of_strokes_are_left_out(strokes: np.ndarray, size: float) -> None:
     rng = np.random.default_rng(4)
     places = np.sort(rng.choice(strokes.size, 25, replace=False))
     spiked = strokes.copy()
@@ -111,7 +111,7 @@ def test_clipped_samples_are_left_out(full_scale: float) -> None:
     assert np.array_equal(np.isnan(screened.values), at_stop)
 
 
-def test_a_stuck_sensor_is_noticed_while_the_joint_turns_only() -> None:
+def test_a_stuck_sensor_is_noticed_only_while_the_joint_turns() -> None:
     values = np.sin(2 * np.pi * 56.0 * TIMES)
     values[300:700] = values[300]
     assert screen(values).stuck == 400

@@ -33,7 +33,7 @@ def test_take_splits_once_and_for_all_however_it_was_fed(steps: list[int], chunk
     noise=st.lists(st.integers(-200, 200), min_size=2, max_size=80),
     chunks=st.tuples(st.integers(1, 80), st.integers(1, 80)),
 )
-def test_what_is_late_does_not_depend_on_chunks(noise: list[int], chunks: tuple[int, int]) -> None:
+def test_lateness_does_not_depend_on_chunks(noise: list[int], chunks: tuple[int, int]) -> None:
     stamps = [(20 * i + n + 1000) * MS for i, n in enumerate(noise)]
     one, other = (buffer_of(stamps, chunk) for chunk in chunks)
     assert (one.late, one.disordered, one.jumps) == (other.late, other.disordered, other.jumps)
@@ -60,7 +60,7 @@ def test_a_clock_set_back_opens_a_new_time_base(chunk: int) -> None:
 
 
 @given(place=st.integers(1, 118), leap=st.sampled_from([-3600, -5, 3600, 86400 * 365]), chunk=st.integers(1, 130))
-def test_a_stray_stamp_is_dropped_and_nothing_else(place: int, leap: int, chunk: int) -> None:
+def test_only_the_stray_stamp_is_dropped(place: int, leap: int, chunk: int) -> None:
     stamps = [4000 * CLOCK_JUMP + 20 * MS * i for i in range(120)]
     astray = [*stamps[:place], stamps[place] + leap * CLOCK_JUMP, *stamps[place + 1 :]]
     buffer = buffer_of(astray, chunk)

@@ -1,4 +1,4 @@
-"""The Magnus-4 scan: its order, its identities, and what it refuses."""
+"""The Magnus-4 scan: its order, its identities and its refusals."""
 
 import math
 from dataclasses import replace
@@ -80,7 +80,7 @@ def test_a_constant_force_at_its_deflection_stays_there():
 
 
 @given(st.integers(1, 90), st.integers(0, 2**31), st.sampled_from([0.0, 0.02, 0.7, 3.0]))
-def test_is_the_chain_of_its_own_steps(steps, seed, damping):
+def test_response_is_the_product_of_the_steps(steps, seed, damping):
     """The sums over blocks do the arithmetic of a loop over steps, whatever their number and however damped."""
     rng = np.random.default_rng(seed)
     k, u = rng.uniform(-0.9, 0.9, (2, steps)), rng.normal(size=(2, steps))
@@ -149,7 +149,7 @@ def test_the_determinant_of_a_step_is_the_damping(seed):
     np.testing.assert_allclose(determinants, math.exp(-2 * DYNAMICS.damping_ratio * OMEGA * 0.02), rtol=1e-12)
 
 
-def test_no_steps_are_no_motion():
+def test_zero_steps_keep_the_start():
     response = Oscillator(DYNAMICS, np.zeros((2, 0)), 0.01).respond(np.zeros((2, 0)), START)
     assert response.displacement.tolist() == [START[0]]
     assert response.velocity.tolist() == [START[1]]

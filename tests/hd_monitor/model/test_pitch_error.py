@@ -26,7 +26,7 @@ def test_interference_repeats_twice_a_revolution_and_never_pulls(errors):
 
 
 @given(ERRORS, st.floats(-1e-3, 1e-3))
-def test_where_one_starts_to_count_does_not_matter(errors, offset):
+def test_the_first_tooth_counted_does_not_matter(errors, offset):
     moved = PitchErrors(tuple(e + offset for e in errors))
     assert moved.interference(LOBE) == pytest.approx(PitchErrors(tuple(errors)).interference(LOBE), abs=1e-15)
 
@@ -58,11 +58,11 @@ def test_the_same_seed_makes_the_same_gear():
 
 @pytest.mark.parametrize("errors", [(0.0, 1.0), (0.0, 0.0, float("nan"), 0.0)])
 def test_impossible_errors_are_refused(errors):
-    with pytest.raises(ParameterError, match="describe no spline"):
+    with pytest.raises(ParameterError, match="are not those of a spline"):
         PitchErrors(errors)
 
 
 @pytest.mark.parametrize("sensitivity", [-1.0, float("inf")])
 def test_impossible_stiffening_is_refused(sensitivity):
-    with pytest.raises(ParameterError, match="no stiffening"):
+    with pytest.raises(ParameterError, match="not a stiffening"):
         PitchErrors.of_eccentric_gear(160, 1e-5).stiffness_series(sensitivity)

@@ -69,7 +69,7 @@ def test_the_part_after_a_time_starts_there():
 
 
 @pytest.mark.parametrize(("duration", "rate"), [(0.0, 1000.0), (-1.0, 1000.0), (1.0, 0.0), (float("nan"), 1000.0)])
-def test_no_samples_is_refused(duration, rate):
+def test_an_empty_simulation_is_refused(duration, rate):
     with pytest.raises(ParameterError, match="hold no samples"):
         simulate(table_1(), np.zeros_like, duration=duration, rate=rate)
 

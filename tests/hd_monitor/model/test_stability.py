@@ -1,4 +1,4 @@
-"""Floquet stability: thresholds and growth rates computed elsewhere, and the identities of the theory."""
+"""Floquet stability: independently computed thresholds and growth rates, and the identities of the theory."""
 
 import math
 

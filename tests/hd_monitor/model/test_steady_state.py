@@ -1,4 +1,4 @@
-"""Harmonic balance against numbers computed elsewhere, against time integration, and against its own equation."""
+"""Harmonic balance against an independent solution, against time integration, and against its own equation."""
 
 import math
 from dataclasses import replace
@@ -45,7 +45,7 @@ def integrated_period(model: ParametricModel, speed_rpm: float, steps_per_second
 
 
 @pytest.mark.parametrize("speed_rpm", sorted(oracle.LINES))
-def test_lines_are_those_computed_elsewhere(speed_rpm):
+def test_lines_agree_with_an_independent_solution(speed_rpm):
     for pair, expected in zip(line_pairs(oracle.MODEL, speed_rpm), oracle.LINES[speed_rpm], strict=True):
         for line, printed in zip(pair, expected, strict=True):
             last_digit = 0.005 if printed > 10 else 0.00005
@@ -150,11 +150,11 @@ def test_the_rms_is_that_of_the_lines():
     assert state.acceleration_rms == pytest.approx(math.sqrt(sum(a * a for a in amplitudes) / 2))
 
 
-def test_an_order_that_is_no_line_has_no_amplitude():
+def test_other_orders_have_no_amplitude():
     assert steady_state(table_1(), 750.0).acceleration_phasor(161) == 0j
 
 
-def test_frequencies_are_those_of_the_reducer():
+def test_frequencies_agree_with_the_reducer():
     state = steady_state(table_1(), 750.0)
     for order, frequency in ((160, 25.0), (162, 25.3125)):
         assert order in state.orders
@@ -166,7 +166,7 @@ def test_the_direction_of_rotation_does_not_matter_without_phases():
 
 
 def test_turning_back_with_phases_agrees_with_time_integration():
-    # phases that are no mere shift of the origin: the defects look different from behind
+    # these phases are not a mere shift of the origin: the defects differ between the directions
     model = replace(oracle.MODEL, flexspline=StiffnessSeries((0.06, 0.03, 0.02), (0.0, 1.0, -2.0)))
     state = steady_state(model, -1600.0, combination_order=11)
     run = simulate(model, constant_speed(model.reducer, -1600.0), duration=9.0, rate=8000.0)

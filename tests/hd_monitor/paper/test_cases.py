@@ -30,7 +30,7 @@ def test_papers_cases_are_installed():
     assert "table_1" in load_paper_cases()
 
 
-def test_a_case_changes_only_what_it_says(cases):
+def test_a_case_changes_only_its_own_values(cases):
     assert cases["sweep_double"].model.dynamics.damping_ratio == 0.023
     assert cases["sweep_double_damped"].model.dynamics.damping_ratio == 0.027
     assert cases["sweep_double_damped"].model.dynamics.natural_frequency == 55.0
@@ -88,15 +88,15 @@ def test_the_example_is_usable():
         ("speed: 0", "must be above 0"),
         ("speed: .nan", "not a finite number"),
         ("torque: {load_fluctuation: yes}", "not a finite number"),
-        ("speeds: {start: 300, stop: 200, step: 10}", "goes nowhere"),
-        ("sweep: {start: 1, stop: 10, rate: 0}", "goes nowhere"),
+        ("speeds: {start: 300, stop: 200, step: 10}", "is empty or endless"),
+        ("sweep: {start: 1, stop: 10, rate: 0}", "is empty or endless"),
         ("circular_spline: {beta: [0.1]}\npitch_error: {eccentricity: 1.0e-5}", "not both"),
         ("- a\n- b", "holds no named values"),
-        ("a: [", "is no YAML"),
+        ("a: [", "is not valid YAML"),
         ("reducer: {flexspline_teeth: 100, circular_spline_teeth: 102}", "gives no stiffness index"),
     ],
 )
-def test_wrong_files_are_refused_with_a_clear_line(own, text, message):
+def test_bad_files_are_refused_in_one_line(own, text, message):
     with pytest.raises(HdMonitorError, match=message) as caught:
         load_own_case(own(text))
     assert "\n" not in str(caught.value)

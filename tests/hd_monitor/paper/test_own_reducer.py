@@ -37,7 +37,7 @@ def test_unstable_speeds_are_named(case):
     assert "1680" in dict(shown.facts)["unstable speeds (left out of the curve)"]
 
 
-def test_a_reducer_that_is_stable_nowhere_is_shown_as_such(case):
+def test_a_reducer_unstable_at_every_speed_is_reported_so(case):
     wild = replace(case, model=scale_defects(case.model, 5.0), speeds=Range(1660.0, 1700.0, 20.0))
     (shown,) = compute(FIGURES, wild, ["F16"])
     assert dict(shown.facts)["highest"] == "none: no stable speed"

@@ -100,7 +100,7 @@ def test_report_is_a_page_and_a_png_for_each_figure(report):
     assert (folder / "X1.png").read_bytes().startswith(PNG)
 
 
-def test_page_loads_nothing_from_elsewhere(report):
+def test_page_loads_no_other_files(report):
     _, _, reader = report
     assert reader.sources
     for source in reader.sources:

@@ -29,7 +29,7 @@ def test_everything_promised_is_listed_once():
 
 
 @pytest.mark.parametrize("name", [entry.id for entry in EXHIBITS])
-def test_every_exhibit_has_its_own_claims_and_something_to_see(exhibit, name):
+def test_every_exhibit_has_claims_and_labelled_panels(exhibit, name):
     shown = exhibit(name)
     assert shown.id == name
     assert shown.claims

@@ -21,7 +21,7 @@ ORACLE = {
     (0.70, "double"): (5.5e2, 2.2e-4),
 }
 FORCED = 1.7e-5
-"""What is there without any growth [rad]."""
+"""Forced vibration, without any growth [rad]."""
 
 # An unstable peak grows from what was there before the band, which in a sweep from rest is the rounding of the
 # arithmetic: changing nothing but the sampling rate or the first frequency moves it by up to two decades.
@@ -54,7 +54,7 @@ def test_figures_10_and_11_printed_bounds(peaks, rate):
     assert peaks[rate, "double"][0] > 1e1
 
 
-def test_growth_of_a_disturbance_in_the_band_is_what_floquet_says(cases):
+def test_growth_of_a_disturbance_in_the_band_agrees_with_floquet(cases):
     """A disturbance much larger than rounding, put in before the band, grows by the integral of the growth rates."""
     model, rate, start, stop = cases["sweep_single"].model, 0.6, 100.0, 120.0
     motion = linear_sweep(model.reducer, start, rate)

@@ -1,4 +1,4 @@
-"""The core's parameters as ROS declares them."""
+"""The core's parameters declared in ROS."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""Queues: as deep as asked for, and no deeper than the middleware bears."""
+"""Queues have the depth requested, as far as the middleware allows."""
 
 from typing import Any
 
@@ -55,6 +55,6 @@ def test_the_node_warns_of_a_queue_that_cannot_be_so_deep(start_module: Any, pee
 
     node = start_module("hd_monitor.ros", "--ros-args", "-p", "input.queue_seconds:=60.0")
     peer.until(lambda: "watching joint" in node.output, "the node")
-    warned = "the queues hold 5 s; ask for less" in node.output
+    warned = "the queues hold 5 s; reduce it" in node.output
     assert warned == (most_messages() < 60_000)
     assert node.interrupt() == 0

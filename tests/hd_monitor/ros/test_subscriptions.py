@@ -27,7 +27,7 @@ def publish(publisher: Any, first: int, count: int) -> None:
         publisher.publish(message)
 
 
-def test_what_was_published_comes_out_in_order(peer: Any) -> None:
+def test_messages_are_taken_in_their_order(peer: Any) -> None:
     from geometry_msgs.msg import AccelStamped
 
     subscription = drained(peer, 1000)
