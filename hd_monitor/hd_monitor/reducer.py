@@ -87,7 +87,7 @@ class Reducer:
         if z2 - z1 > z1 // 2:
             raise GeometryError(
                 f"the tooth difference {z2} - {z1} = {z2 - z1} requires the flexspline to deflect by more than a "
-                "quarter of its size, which no flexspline survives; check the tooth numbers (the difference is usually 2)"
+                "quarter of its size, which none survives; check the tooth numbers (the difference is usually 2)"
             )
         try:
             object.__setattr__(self, "mount", Mount(self.mount))

@@ -78,9 +78,7 @@ def stamp(head: tuple[int, int, str]) -> int:
 @pytest.mark.parametrize(("write", "read"), [(accel, cdr.decode_accel_stamped), (imu, cdr.decode_imu)])
 @settings(max_examples=60)
 @given(rows=st.lists(st.tuples(headers, triples, triples, st.booleans()), max_size=8))
-def test_vectors_keep_their_order_for_mixed_frames_and_byte_orders(
-    write: Any, read: Any, rows: list[Any]
-) -> None:
+def test_vectors_keep_their_order_for_mixed_frames_and_byte_orders(write: Any, read: Any, rows: list[Any]) -> None:
     samples = read([write(head, linear, angular, little_endian=little) for head, linear, angular, little in rows])
     assert samples.faults == ()
     assert samples.stamps.tolist() == [stamp(head) for head, *_ in rows]
