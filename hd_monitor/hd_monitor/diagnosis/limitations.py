@@ -32,6 +32,34 @@ SENTENCES: Mapping[LimitationCode, str] = {
         "A torque of {torque_nm:.3g} N·m would wind the reducer up by {wind_up_deg:.0f}°: check the effort's unit, "
         "dynamics.inertia and dynamics.natural_frequency"
     ),
+    LimitationCode.VALUE_ON_BOUND: (
+        "the fit ended on the limit of its search for {names}, so the value there is not a measurement: check the "
+        "parameters"
+    ),
+    LimitationCode.VELOCITY_ZERO: (
+        "The velocities in joint_states are zero while the positions move by {moved_deg:.1f}°: have the driver publish "
+        "velocities, or leave the field empty so that they are taken from the positions"
+    ),
+    LimitationCode.POSITION_STILL: (
+        "The positions in joint_states stand still while the velocities reach {velocity_deg_s:.3g}°/s: check what the "
+        "driver publishes"
+    ),
+    LimitationCode.MOTION_INCONSISTENT: (
+        "Positions and velocities in joint_states contradict each other: they differ by {difference_percent:.0f} % of "
+        "the motion; check that both belong to this joint and to the same stamp"
+    ),
+    LimitationCode.VELOCITY_UNIT: (
+        "Positions and velocities in joint_states contradict each other: the positions change {ratio:.3g} times as "
+        "much as the velocities say, which {mistake} would explain; publish rad and rad/s of the output side"
+    ),
+    LimitationCode.VELOCITY_SCALE: (
+        "Positions and velocities in joint_states contradict each other: the positions change {ratio:.3g} times as "
+        "much as the velocities say; check the scale of both"
+    ),
+    LimitationCode.VIBRATION_CONSTANT: (
+        "The vibration signal does not change at all while the joint turns: check the sensor"
+    ),
+    LimitationCode.SEGMENT_UNUSABLE: "The newest motion could not be used: {cause}",
     LimitationCode.NATURAL_FREQUENCY_BEYOND_RATE: (
         "The natural frequency given, {given_hz:g} Hz, lies beyond what {rate_hz:.0f} samples a second show: sample "
         "faster, or correct dynamics.natural_frequency"

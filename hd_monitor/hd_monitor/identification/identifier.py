@@ -1,14 +1,18 @@
 """Identification of the stiffness indexes from the vibration and the motion it belongs to."""
 
 import math
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from ..acquisition.record import Record
 from ..settings import JointSettings
+from .checks.motion import motion_contradiction
+from .limitation import Limitation
 from .result import Identification
-from .segment.assembly import Collector
-from .with_sensor.estimation import Estimation
+from .segment.assembly import SegmentAssembler
+from .with_sensor.estimator import Estimator
 
 CRUISE_SEGMENT, SHORTEST_SEGMENT = 2.0, 1.0
 """Length [s] of the segments looked at once the indexes are known well enough, and once they are known far better."""
@@ -46,9 +50,11 @@ class Identifier:
     """
 
     def __init__(self, settings: JointSettings, *, sparing: bool = True) -> None:
-        self._minimum_speed = settings.analysis.minimum_speed * math.tau / 60.0 / settings.reducer.reduction
-        self._collector = Collector(self._minimum_speed)
-        self._estimation = Estimation(settings)
+        self._reduction = settings.reducer.reduction
+        self._minimum_speed = settings.analysis.minimum_speed * math.tau / 60.0 / self._reduction
+        self._assembler = SegmentAssembler(self._minimum_speed)
+        self._estimator = Estimator(settings)
+        self._state = self._estimator.initial()
         self._sparing = sparing
         self._skip = 0.0
         self._passed = 0.0
@@ -62,31 +68,59 @@ class Identifier:
                 self._passed += len(record) * record.period
             return
         if self._passed:
-            self._estimation.age(self._passed)
+            self._state = self._estimator.aged(self._state, self._passed)
             self._passed = 0.0
-        for segment in self._collector.add(record, self._segment_length):
-            self._estimation.take(segment)
+        if contradiction := self._contradiction(record):
+            self._update(self._assembler.flush())
+            self._state = replace(self._state, unusable=contradiction)
+            return
+        self._update(self._assembler.add(record, self._segment_length))
+
+    def _update(self, segments: Iterable[Sequence[Record]]) -> None:
+        for records in segments:
+            self._state = self._estimator.update(self._state, records)
             if self._is_cruising:
-                period = min(CRUISE_PERIOD * self._estimation.sureness, LONGEST_PERIOD)
+                period = min(CRUISE_PERIOD * self._sureness, LONGEST_PERIOD)
                 self._skip = period - self._segment_length
 
     def estimate(self) -> Identification | None:
         """Return the newest estimate; None as long as there was not enough motion."""
-        return self._estimation.result
+        result, unusable = self._state.result, self._state.unusable
+        if unusable is None:
+            return result
+        if result is None:
+            return Identification.none((unusable,), relative=False)
+        # What was known before stands; that it gets no younger must be said
+        return replace(result, limitations=(*result.limitations, replace(unusable, blocks=False)))
 
     def finish(self) -> Identification | None:
         """Use what is still waiting to become a longer segment, and return the estimate on everything."""
-        for segment in self._collector.flush():
-            self._estimation.take(segment)
-        return self._estimation.result
+        for records in self._assembler.flush():
+            self._state = self._estimator.update(self._state, records)
+        return self.estimate()
+
+    def _contradiction(self, record: Record) -> Limitation | None:
+        if not (np.isfinite(record.angle).all() and np.isfinite(record.speed).all()):
+            return None
+        return motion_contradiction(
+            record.times,
+            record.angle,
+            record.speed,
+            minimum_speed=self._minimum_speed,
+            reduction=self._reduction,
+        )
+
+    @property
+    def _sureness(self) -> float:
+        return self._estimator.sureness(self._state)
 
     @property
     def _is_cruising(self) -> bool:
-        return self._sparing and self._estimation.sureness >= 1.0
+        return self._sparing and self._sureness >= 1.0
 
     @property
     def _segment_length(self) -> float:
-        if self._is_cruising:  # from where the period grows no more on, the segments get shorter
-            surplus = CRUISE_PERIOD * self._estimation.sureness / LONGEST_PERIOD
+        if self._is_cruising:  # once the period grows no further, the segments get shorter
+            surplus = CRUISE_PERIOD * self._sureness / LONGEST_PERIOD
             return min(CRUISE_SEGMENT, max(SHORTEST_SEGMENT, CRUISE_SEGMENT / surplus))
-        return min(LONGEST_SEGMENT, max(1.0, 0.25 * self._estimation.seconds))
+        return min(LONGEST_SEGMENT, max(1.0, 0.25 * self._state.seconds))

@@ -17,6 +17,15 @@ class LimitationCode(StrEnum):
     TORQUE_TOO_SMALL = "torque_too_small"
     TORQUE_TOO_LARGE = "torque_too_large"
     TORQUE_ABSURD = "torque_absurd"
+    VALUE_ON_BOUND = "value_on_bound"
+    # What the input says cannot be
+    VELOCITY_ZERO = "velocity_zero"
+    POSITION_STILL = "position_still"
+    MOTION_INCONSISTENT = "motion_inconsistent"
+    VELOCITY_UNIT = "velocity_unit"
+    VELOCITY_SCALE = "velocity_scale"
+    VIBRATION_CONSTANT = "vibration_constant"
+    SEGMENT_UNUSABLE = "segment_unusable"
     # What the signal does not show
     NATURAL_FREQUENCY_BEYOND_RATE = "natural_frequency_beyond_rate"
     LINES_BEYOND_RATE = "lines_beyond_rate"

@@ -3,11 +3,15 @@
 import functools
 import math
 from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
 
 from ..arrays import ComplexArray, FloatArray
 from ..model.parameters import ParametricModel
 from ..reducer import LinePair
 from .checks.critical_speed import critical_speed
+from .fit.gauss_newton import FitStatus
 from .limitation import Limitation
 
 
@@ -59,6 +63,8 @@ class Identification:
         Identified amplitude of the unknown load fluctuation [N·m].
     model : ParametricModel or None
         The reducer as identified, without its load; None where the indexes are relative.
+    fit_status : FitStatus or None
+        Why the newest fit ended; None where nothing is fitted step by step (sensorless).
     limitations : tuple of Limitation
         What weakens the result, or forbids naming a part on it.
     """
@@ -81,8 +87,22 @@ class Identification:
     load_fluctuation: float = 0.0
     load_fluctuation_std: float = float("nan")
     model: ParametricModel | None = None
+    fit_status: FitStatus | None = None
     limitations: tuple[Limitation, ...] = ()
     beta_covariance: FloatArray | None = None
+
+    @classmethod
+    def none(cls, limitations: tuple[Limitation, ...], *, relative: bool) -> Self:
+        """Return the result where nothing could be identified, with the reasons."""
+        return cls(
+            circular_spline=np.zeros(0, dtype=np.complex128),
+            flexspline=np.zeros(0, dtype=np.complex128),
+            index=LinePair(0.0, 0.0),
+            index_std=LinePair(math.inf, math.inf),
+            relative=relative,
+            load_fluctuation=math.nan,
+            limitations=limitations,
+        )
 
     @property
     def doubts(self) -> tuple[Limitation, ...]:

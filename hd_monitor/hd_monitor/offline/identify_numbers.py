@@ -9,9 +9,9 @@ from scipy.optimize import brentq
 from scipy.stats import ncx2, norm
 
 from ..arrays import FloatArray
+from ..identification.fit.indexes import stiffness_indexes
 from ..identification.fit.unknowns import Unknowns
 from ..identification.result import Identification
-from ..identification.with_sensor.indexes import stiffness_indexes
 
 CONFIDENCE = 0.95
 """Probability with which an interval holds the true value."""

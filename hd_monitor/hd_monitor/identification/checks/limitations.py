@@ -8,11 +8,12 @@ import numpy as np
 
 from ...arrays import BoolArray, FloatArray
 from ...reducer import LinePair, Reducer
+from ..fit.gauss_newton import Fit
+from ..fit.indexes import Indexes
 from ..fit.linearisation import Predictor
 from ..fit.score_test import ScoreTest
 from ..fit.unknowns import Unknowns
 from ..limitation import Limitation, LimitationCode, blocker, doubt
-from ..with_sensor.indexes import Indexes
 from .coverage import Coverage
 
 LEAST_TRAVEL = math.radians(85.0)
@@ -45,7 +46,7 @@ class FitSummary:
     Attributes
     ----------
     predictor : Predictor
-    values : ndarray, shape (unknowns,)
+    fit : Fit
     active : ndarray of bool, shape (unknowns,)
         Unknowns that were fitted.
     indexes : Indexes
@@ -65,7 +66,7 @@ class FitSummary:
     """
 
     predictor: Predictor
-    values: FloatArray
+    fit: Fit
     active: BoolArray
     indexes: Indexes
     score_tests: Mapping[int, ScoreTest]
@@ -75,6 +76,11 @@ class FitSummary:
     coverage: Coverage
     signal_to_noise: float
     relative: bool
+
+    @property
+    def values(self) -> FloatArray:
+        """Best values of the unknowns, shape (unknowns,)."""
+        return self.fit.values
 
     @property
     def unknowns(self) -> Unknowns:
@@ -167,6 +173,11 @@ def _contradictions(fit: FitSummary) -> Iterator[Limitation]:
         motion_lags = values[u.delay] > 0.0
         code = LimitationCode.MOTION_STAMPS_LAG if motion_lags else LimitationCode.VIBRATION_STAMPS_LAG
         yield doubt(code, delay_ms=1e3 * abs(float(values[u.delay])))
+    bounds = u.bounds()
+    names = {u.frequency: "natural frequency", u.damping: "damping ratio", u.torque: "torque", u.delay: "clock offset"}
+    on_bound = [name for place, name in names.items() if fit.active[place] and abs(values[place]) >= bounds[place]]
+    if on_bound:
+        yield doubt(LimitationCode.VALUE_ON_BOUND, names=" and ".join(on_bound))
     test = tests[u.torque]
     if not fit.relative and test.significance > CONTRADICTION and abs(test.value) > _CORRECTED_TORQUE:
         yield blocker(LimitationCode.TORQUE_TOO_SMALL if test.value > 0.0 else LimitationCode.TORQUE_TOO_LARGE)

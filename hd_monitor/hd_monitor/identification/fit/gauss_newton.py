@@ -1,18 +1,18 @@
 """Gauss-Newton fit of the unknowns to a number of segments at once."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from enum import StrEnum
 
 import numpy as np
 
 from ...arrays import BoolArray, FloatArray
-from ..segment.segment import FREQUENCY_MARGIN, Segment
+from ..segment.segment import Segment
 from .information import Information
 from .linearisation import Predictor
 from .noise import NoiseFloor
 from .normal_equations import LinearisedSegment, NormalEquations, examine
-from .unknowns import Unknowns
 
 LARGEST_FLUCTUATION = 0.8
 """Sum of all abs(β) beyond which the stiffness would come near zero; steps end there."""
@@ -23,10 +23,18 @@ CONVERGED = 0.05
 NEGLIGIBLE = 0.1
 """Standard deviations that a step may miss its end by for being taken along a straight line."""
 
-_NEARBY = 0.5  # of the steps over which derivatives change by their own size
 _HALVINGS = 5
 _TRIAL_ROUNDS = 3  # after which the best of several starts go on
 _FINALISTS = 2
+
+
+class FitStatus(StrEnum):
+    """Why a fit ended."""
+
+    CONVERGED = "converged"
+    NO_DESCENT = "no_descent"
+    ROUNDS_USED_UP = "rounds_used_up"
+    ON_BOUND = "on_bound"
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -48,6 +56,8 @@ class Fit:
         Its size in standard deviations of the unknowns.
     covariance : ndarray, shape (unknowns, unknowns)
         Of the unknowns fitted, by the information of the segments and the prior; 0 for the others.
+    status : FitStatus
+        Why the steps ended here.
     """
 
     values: FloatArray
@@ -57,6 +67,7 @@ class Fit:
     step: FloatArray
     step_size: float
     covariance: FloatArray
+    status: FitStatus
 
     @property
     def floor(self) -> NoiseFloor:
@@ -93,18 +104,6 @@ class Problem:
             values, tuple(examine(segment, self.predictor, values, self.floor) for segment in self.segments)
         )
 
-    def near(self, values: FloatArray, known: Mapping[Segment, LinearisedSegment]) -> Fit:
-        """Evaluate a point to first order from where segments were simulated nearby; simulate the others."""
-        reach = _NEARBY * _linear_range(self.predictor.unknowns)
-        segments = []
-        for segment in self.segments:
-            item = known.get(segment)
-            if item is None or bool((np.abs(values - item.simulated) > reach).any()):
-                segments.append(examine(segment, self.predictor, values, self.floor))
-            else:
-                segments.append(item.moved(values - item.values).weighted(self.floor))
-        return self._fit(values, tuple(segments))
-
     def _fit(self, values: FloatArray, segments: tuple[LinearisedSegment, ...]) -> Fit:
         equations = segments[0].equations
         for item in segments[1:]:
@@ -115,27 +114,23 @@ class Problem:
         place = np.ix_(self.active, self.active)
         covariance[place] = np.linalg.pinv(information[place], rcond=1e-13, hermitian=True)
         step = covariance @ right
+        step_size = math.sqrt(max(float(step @ information @ step), 0.0))
         return Fit(
             values=values,
             segments=segments,
             equations=equations,
             cost=equations.cost + self.prior.cost(values),
             step=step,
-            step_size=math.sqrt(max(float(step @ information @ step), 0.0)),
+            step_size=step_size,
             covariance=covariance,
+            status=FitStatus.CONVERGED if step_size < CONVERGED else FitStatus.ROUNDS_USED_UP,
         )
 
     def solve(self, start: FloatArray | Fit, *, rounds: int) -> Fit:
         """Take Gauss-Newton steps from `start`, at most `rounds`."""
-        return self._descend(self._started(start), rounds)
-
-    def solve_near(self, start: FloatArray, known: Mapping[Segment, LinearisedSegment], *, rounds: int) -> Fit:
-        """Do the same, with a first step from what is `known` of the segments at other points, if it leads down."""
-        rough = self.near(start, known)
-        trial = self.at(self._bounded(start + rough.step * self._room(start, rough.step)))
-        if math.isfinite(trial.cost) and trial.cost < rough.cost:
-            return self._descend(trial, rounds - 1)
-        return self.solve(start, rounds=rounds)
+        fit = self._descend(self._started(start), rounds)
+        on_bound = self.active & (np.abs(fit.values) >= self.predictor.unknowns.bounds())
+        return replace(fit, status=FitStatus.ON_BOUND) if on_bound.any() else fit
 
     def _started(self, start: FloatArray | Fit) -> Fit:
         """Evaluate the start; of one that was simulated already, only the weights are new."""
@@ -159,14 +154,14 @@ class Problem:
                     break
                 step = 0.4 * step
             else:
-                break
+                return replace(fit, status=FitStatus.NO_DESCENT)
             fit = trial
         return fit
 
     def _curvature(self, fit: Fit) -> float:
         """Size of what the model is beyond linear over the next step, in standard deviations of the unknowns."""
         unknowns = self.predictor.unknowns
-        part = np.abs(fit.step) / _linear_range(unknowns)
+        part = np.abs(fit.step) / unknowns.linear_range()
         forces = unknowns.mask(unknowns.load, unknowns.torque, unknowns.inertia)
         information = fit.equations.information + self.prior.matrix
         forced, rest = (
@@ -187,6 +182,7 @@ class Problem:
             step=np.zeros(values.size),
             step_size=0.0,
             covariance=fit.covariance,
+            status=FitStatus.CONVERGED,
         )
 
     def multistart(self, starts: Sequence[FloatArray], *, rounds: int) -> tuple["Problem", Fit]:
@@ -215,17 +211,9 @@ class Problem:
         return freedom * math.log(self.floor.mean * fit.equations.cost) + self.prior.cost(fit.values), self, fit
 
     def _bounded(self, values: FloatArray) -> FloatArray:
-        """Return the values with those that have natural bounds kept within."""
-        unknowns = self.predictor.unknowns
-        bounded = values.copy()
-        for place, bound in (
-            (unknowns.frequency, math.log(FREQUENCY_MARGIN)),
-            (unknowns.damping, 1.5),
-            (unknowns.torque, 4.0),
-            (unknowns.delay, 0.05),
-        ):
-            bounded[place] = min(max(float(values[place]), -bound), bound)
-        return bounded
+        """Return the values with those that have bounds kept within."""
+        bounds = self.predictor.unknowns.bounds()
+        return np.clip(values, -bounds, bounds)
 
     def _room(self, values: FloatArray, step: FloatArray) -> float:
         """Part of a step that keeps the stiffness positive."""
@@ -240,16 +228,3 @@ class Problem:
                 break
             factor *= 0.6
         return factor
-
-
-def _linear_range(unknowns: Unknowns) -> FloatArray:
-    """Steps over which the prediction's derivatives change by about their own size; near a resonance they are small."""
-    span = np.empty(unknowns.size)
-    span[unknowns.stiffness] = 0.05
-    span[unknowns.load] = 1.0
-    span[unknowns.frequency] = 0.01
-    span[unknowns.damping] = 0.3
-    span[unknowns.torque] = 1.0
-    span[unknowns.delay] = 5e-4
-    span[unknowns.inertia] = 1.0
-    return span

@@ -7,6 +7,7 @@ import numpy as np
 
 from ...arrays import BoolArray, ComplexArray, FloatArray
 from ...model.parameters import Dynamics
+from ..segment.segment import FREQUENCY_MARGIN
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -102,6 +103,30 @@ class Unknowns:
         std[self.delay] = 0.01
         std[self.inertia] = 0.7
         return std
+
+    def bounds(self) -> FloatArray:
+        """Magnitudes that the unknowns cannot exceed, shape (unknowns,): a value there is not a measurement."""
+        bounds = np.full(self.size, np.inf)
+        bounds[self.frequency] = math.log(FREQUENCY_MARGIN)
+        bounds[self.damping] = 1.5
+        bounds[self.torque] = 4.0
+        bounds[self.delay] = 0.05
+        return bounds
+
+    def linear_range(self) -> FloatArray:
+        """Steps over which the prediction's derivatives change by about their own size, shape (unknowns,).
+
+        Near a resonance they are small.
+        """
+        span = np.empty(self.size)
+        span[self.stiffness] = 0.05
+        span[self.load] = 1.0
+        span[self.frequency] = 0.01
+        span[self.damping] = 0.3
+        span[self.torque] = 1.0
+        span[self.delay] = 5e-4
+        span[self.inertia] = 1.0
+        return span
 
     def phasors(self, values: FloatArray, part: slice) -> ComplexArray:
         """Complex phasors of one of the parts, shape (harmonics,) or (load orders,)."""

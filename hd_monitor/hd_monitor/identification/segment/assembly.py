@@ -13,7 +13,7 @@ _FEWEST_SAMPLES = 64
 _SLACK = 0.1  # s that may lack from the length asked for: records are cut at whole periods of the stamps
 
 
-class Collector:
+class SegmentAssembler:
     """Joins records that follow each other without a gap; standing ones end a segment.
 
     Parameters

@@ -1,6 +1,7 @@
 """From records to segments: with the torque that is known or stands for it, and the sensor's sign as found so far."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -19,6 +20,25 @@ NOMINAL_INDEX = 0.05
 _TRIAL_WIND_UP = 1e-3  # rad
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Setup:
+    """What the data have said of torque and sensor.
+
+    Attributes
+    ----------
+    nominal_torque : float or None
+        Torque [N·m] that stands for an unknown one; None as long as the torque is known.
+    reference_torque : float
+        Torque [N·m] in whose unit load fluctuations are expressed; 0 before the first segment.
+    mounting : float
+        1, or -1 for a sensor whose sign is against that of the torque.
+    """
+
+    nominal_torque: float | None = None
+    reference_torque: float = 0.0
+    mounting: float = 1.0
+
+
 class Preparation:
     """Makes segments of one joint's records.
 
@@ -28,13 +48,6 @@ class Preparation:
     unknowns : Unknowns
     prior : Information
         What is known of them before any data.
-
-    Attributes
-    ----------
-    nominal_torque : float or None
-        Torque [N·m] that stands for one that nobody knows; None as long as the torque is known.
-    mounting : float
-        1, or -1 for a sensor whose sign is against that of the torque.
     """
 
     def __init__(self, settings: JointSettings, unknowns: Unknowns, prior: Information) -> None:
@@ -49,39 +62,35 @@ class Preparation:
             natural_frequency=self._given.natural_frequency,
             inertial=settings.vibration.gravity,
         )
-        self.nominal_torque: float | None = None
-        self.mounting = 1.0
 
     @property
     def inertial(self) -> bool:
         """Whether the sensor also feels gravity."""
         return self._builder.inertial
 
-    def build(self, records: Sequence[Record]) -> Segment:
-        """Make a segment of records that follow each other; where nobody knows the torque, a nominal one stands for it.
+    def build(self, records: Sequence[Record], setup: Setup) -> tuple[Segment, Setup]:
+        """Make a segment of records that follow each other; a nominal torque stands for an unknown one.
 
         Raises
         ------
         ParameterError
             If the sampling rate is far too low for the lines and the natural frequency.
         """
-        segment = self._builder.build(records, self._known_torque(records))
-        return segment if self.mounting > 0.0 else segment.mirrored()
+        torque = None
+        if not np.isfinite(records[0].torque).all():
+            torque = self._torque or setup.nominal_torque
+            if torque is None:
+                torque = self._find_nominal(records)
+                setup = replace(setup, nominal_torque=torque)
+        segment = self._builder.build(records, torque)
+        if not setup.reference_torque:
+            setup = replace(setup, reference_torque=self._reference_torque(segment))
+        return (segment if setup.mounting > 0.0 else segment.mirrored()), setup
 
-    def reference_torque(self, segments: Sequence[Segment]) -> float:
-        """Torque [N·m] in whose unit load fluctuations are expressed: the root mean square of the known one."""
-        torque = np.concatenate([s.at_steps.torque for s in segments])
-        return max(float(np.sqrt(np.mean(torque**2))), 0.1 * abs(self._torque), 1e-9 * self._given.stiffness)
-
-    def _known_torque(self, records: Sequence[Record]) -> float | None:
-        """Torque [N·m] to be used instead of the records'; None where they have it."""
-        if np.isfinite(records[0].torque).all():
-            return None
-        if self._torque:
-            return self._torque
-        if self.nominal_torque is None:
-            self.nominal_torque = self._find_nominal(records)
-        return self.nominal_torque
+    def _reference_torque(self, segment: Segment) -> float:
+        """Root mean square [N·m] of the known torque, kept from zero."""
+        level = float(np.sqrt(np.mean(segment.at_steps.torque**2)))
+        return max(level, 0.1 * abs(self._torque), 1e-9 * self._given.stiffness)
 
     def _find_nominal(self, records: Sequence[Record]) -> float:
         """Torque [N·m] at which the lines would speak of a defect of common size."""

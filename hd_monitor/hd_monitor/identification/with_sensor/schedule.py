@@ -25,10 +25,13 @@ class Schedule:
         Motion [s] seen at the last look.
     poor_since : float
         Motion [s] seen when fits became poor; inf while they are not.
+    restarted : float
+        Motion [s] seen when all segments at hand were last fitted as a whole.
     """
 
     looked: float = 0.0
     poor_since: float = math.inf
+    restarted: float = 0.0
 
     def after(self, inflation: float, seconds: float) -> "Schedule":
         """Return the schedule after a fit that leaves an `inflation`, with `seconds` of motion seen."""

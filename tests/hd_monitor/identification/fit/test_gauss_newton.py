@@ -119,35 +119,6 @@ def test_a_start_that_was_simulated_is_not_simulated_again(fitted, simulated):
     assert len(simulated) == len(task.segments)
 
 
-def test_what_is_known_nearby_saves_the_first_simulations(fitted, simulated):
-    task, fit = fitted
-    start = fit.values + 0.1 * (TRUTH != 0.0) * np.abs(TRUTH)
-    known = {item.segment: item for item in task.at(fit.values).segments}
-    simulated.clear()
-    near = task.solve_near(start, known, rounds=10)
-    saved = len(simulated)
-    simulated.clear()
-    far = task.solve(start, rounds=10)
-    assert saved == len(simulated) - len(task.segments)
-    apart = near.values - far.values
-    assert apart @ far.equations.information @ apart < NEGLIGIBLE**2
-
-
-@pytest.mark.parametrize(
-    ("stiffness", "load"), [([0.02, -0.01, -0.4, 0.2], 0.0), ([0.3, 0.3, 0.0, 0.0], 2.0), ([0.0, 0.0, 0.0, 0.0], 5.0)]
-)
-def test_what_is_known_elsewhere_does_not_mislead(fitted, stiffness, load):
-    """To first order from there, any step seems to lead down."""
-    task, fit = fitted
-    elsewhere = UNKNOWNS.zero()
-    elsewhere[UNKNOWNS.stiffness], elsewhere[UNKNOWNS.load] = stiffness, load
-    known = {item.segment: item for item in task.at(elsewhere).segments}
-    near = task.solve_near(UNKNOWNS.zero(), known, rounds=12)
-    information = fit.equations.information[np.ix_(ACTIVE, ACTIVE)]
-    error = (near.values - fit.values)[ACTIVE]
-    assert error @ information @ error < NEGLIGIBLE**2
-
-
 def test_a_large_step_is_not_believed_without_a_simulation():
     task = problem(segment(4))
     start = UNKNOWNS.zero()

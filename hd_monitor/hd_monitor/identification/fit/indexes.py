@@ -7,7 +7,7 @@ import numpy as np
 
 from ...arrays import FloatArray
 from ...reducer import LinePair
-from ..fit.unknowns import Unknowns
+from .unknowns import Unknowns
 
 _EXPLAINED = 2.7
 """Standard deviations that noise alone seldom (in 2.5 %) lifts the square of an index to: 2.4 to 2.8 by its freedom."""

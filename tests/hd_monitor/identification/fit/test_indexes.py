@@ -4,8 +4,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.stats import binom
 
+from hd_monitor.identification.fit.indexes import stiffness_indexes
 from hd_monitor.identification.fit.unknowns import Unknowns
-from hd_monitor.identification.with_sensor.indexes import stiffness_indexes
 
 UNKNOWNS = Unknowns(harmonics=3, load_orders=(2,))
 

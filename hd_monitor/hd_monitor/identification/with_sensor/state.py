@@ -1,0 +1,103 @@
+"""What an estimation with a sensor knows: one frozen state, replaced as a whole by each update."""
+
+import math
+from dataclasses import dataclass, field, replace
+
+from ...arrays import BoolArray, FloatArray
+from ..checks.coverage import Coverage
+from ..checks.residual import LineResidual
+from ..fit.information import Information
+from ..fit.noise import NoiseFloor
+from ..fit.unknowns import Unknowns
+from ..limitation import Limitation
+from ..result import Identification
+from ..segment.preparation import Setup
+from ..segment.segment import Segment
+from ..teeth.watch import ToothWatch
+from .schedule import Schedule
+
+WINDOW = 16.0
+"""Motion [s] that is kept to be fitted again as a whole; from then on each segment is used once."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class State:
+    """The evidence so far, and the best values of the unknowns.
+
+    Attributes
+    ----------
+    values : ndarray, shape (unknowns,)
+    active : ndarray of bool, shape (unknowns,)
+        Unknowns that are fitted.
+    information : Information
+        Of all segments used, without the prior.
+    floor : NoiseFloor or None
+        None before the first segment.
+    residual : LineResidual
+        What is left at the lines.
+    recent : tuple of Segment
+        The newest `WINDOW` of motion.
+    coverage : Coverage
+    setup : Setup
+    schedule : Schedule
+    teeth : ToothWatch
+    result : Identification or None
+        The newest result.
+    unusable : Limitation or None
+        Why the newest segment could not be used; None if it was.
+    """
+
+    values: FloatArray
+    active: BoolArray
+    information: Information
+    floor: NoiseFloor | None
+    residual: LineResidual
+    recent: tuple[Segment, ...] = ()
+    coverage: Coverage = field(default_factory=Coverage)
+    setup: Setup = field(default_factory=Setup)
+    schedule: Schedule = field(default_factory=Schedule)
+    teeth: ToothWatch = field(default_factory=ToothWatch)
+    result: Identification | None = None
+    unusable: Limitation | None = None
+
+    @classmethod
+    def initial(cls, unknowns: Unknowns) -> "State":
+        """Return the state before any data."""
+        return cls(
+            values=unknowns.zero(),
+            active=unknowns.mask(unknowns.stiffness, unknowns.load, unknowns.inertia),
+            information=Information.none(unknowns.size),
+            floor=None,
+            residual=LineResidual.empty(unknowns.harmonics),
+        )
+
+    @property
+    def seconds(self) -> float:
+        """Motion used [s]."""
+        return self.coverage.time
+
+    def with_segment(self, segment: Segment, setup: Setup) -> "State":
+        """Return the state with a segment at hand that is still to be fitted."""
+        recent = (*self.recent, segment)
+        while sum(s.duration for s in recent[1:]) >= WINDOW:
+            recent = recent[1:]
+        return replace(self, recent=recent, coverage=self.coverage.plus(segment), setup=setup, unusable=None)
+
+    def restarted(self) -> "State":
+        """Return the state without what was learnt of the segments, as all those at hand are fitted again."""
+        return replace(
+            self,
+            information=Information.none(self.values.size),
+            schedule=replace(self.schedule, restarted=self.seconds),
+        )
+
+    def aged(self, duration: float, memory: float) -> "State":
+        """Return the state `duration` [s] of motion later; evidence fades with the time constant `memory` [s]."""
+        keep = math.exp(-duration / memory)
+        return replace(
+            self,
+            information=self.information.faded(keep),
+            floor=None if self.floor is None else self.floor.faded(keep),
+            residual=self.residual.faded(keep),
+            teeth=self.teeth.faded(keep),
+        )
