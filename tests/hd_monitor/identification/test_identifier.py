@@ -8,6 +8,7 @@ from tests.simulated.cases import Case, simulate
 
 from hd_monitor.diagnosis.limitations import describe_limitation
 from hd_monitor.identification.identifier import Identifier
+from hd_monitor.identification.limitation import LimitationCode
 from hd_monitor.model import Dynamics, ParametricModel, StiffnessSeries, Torque, line_pairs
 
 MODEL = ParametricModel(
@@ -75,7 +76,10 @@ def test_a_wrong_natural_frequency_is_noticed(factor, motion):
     assert any("natural frequency" in describe_limitation(doubt) for doubt in result.doubts)
     assert_right(result, truth)
     kept = identify(simulate(truth), truth.settings(**wrong, **{"dynamics.refine": False}))
-    assert any("natural frequency" in text or "not explained" in describe_limitation(text) for text in kept.blockers)
+    assert {limitation.code for limitation in kept.blockers} & {
+        LimitationCode.NATURAL_FREQUENCY_CONTRADICTED,
+        LimitationCode.LINES_UNEXPLAINED,
+    }
 
 
 def test_a_lag_between_the_clocks_is_noticed():
@@ -149,23 +153,76 @@ def test_a_standing_joint_gives_nothing():
     assert identify(still, truth.settings()) is None
 
 
+DEGREES, RPM = np.degrees(1.0), 60.0 / (2.0 * np.pi)
+
+
+@pytest.mark.parametrize(
+    ("spoil", "code"),
+    [
+        (lambda r: replace(r, speed=2.0 * r.speed), LimitationCode.VELOCITY_SCALE),
+        (lambda r: replace(r, speed=-r.speed), LimitationCode.VELOCITY_UNIT),
+        (lambda r: replace(r, speed=np.zeros(len(r))), LimitationCode.VELOCITY_ZERO),
+        (lambda r: replace(r, speed=DEGREES * r.speed), LimitationCode.VELOCITY_UNIT),
+        (lambda r: replace(r, speed=RPM * r.speed), LimitationCode.VELOCITY_UNIT),
+        (lambda r: replace(r, angle=DEGREES * r.angle), LimitationCode.VELOCITY_UNIT),
+        (lambda r: replace(r, angle=np.zeros(len(r))), LimitationCode.POSITION_STILL),
+        (
+            lambda r: replace(r, angle=np.random.default_rng(0).standard_normal(len(r))),
+            LimitationCode.MOTION_INCONSISTENT,
+        ),
+        (lambda r: replace(r, acceleration=np.zeros(len(r))), LimitationCode.VIBRATION_CONSTANT),
+        (lambda r: replace(r, speed=1e5 * r.speed, angle=1e5 * r.angle), LimitationCode.SEGMENT_UNUSABLE),
+        (lambda r: replace(r, torque=np.full(len(r), 1e12)), LimitationCode.TORQUE_ABSURD),
+    ],
+    ids=[
+        "doubled",
+        "reversed",
+        "zero velocity",
+        "deg/s",
+        "rpm",
+        "degrees",
+        "still",
+        "noise",
+        "zero vibration",
+        "speed",
+        "torque",
+    ],
+)
+@pytest.mark.parametrize("motion", ["dwell", "strokes"])
+def test_the_true_fault_of_absurd_input_is_named_and_no_part(spoil, code, motion):
+    truth = case(duration=6.0, motion=motion)
+    result = identify([spoil(r) for r in simulate(truth)], truth.settings())
+    assert code in [limitation.code for limitation in result.blockers]
+
+
 @pytest.mark.parametrize(
     "spoil",
     [
         lambda r: replace(r, acceleration=1e200 * r.acceleration),
-        lambda r: replace(r, acceleration=np.zeros(len(r))),
         lambda r: replace(r, acceleration=np.full(len(r), np.nan)),
-        lambda r: replace(r, speed=1e5 * r.speed, angle=1e5 * r.angle),
-        lambda r: replace(r, angle=np.random.default_rng(0).standard_normal(len(r))),
-        lambda r: replace(r, torque=np.full(len(r), 1e12)),
         lambda r: replace(r, torque=np.zeros(len(r))),
     ],
-    ids=["huge", "zero", "missing", "speed", "angle", "torque", "no torque"],
+    ids=["huge", "missing", "no torque"],
 )
 def test_absurd_input_never_raises_and_never_names(spoil):
     truth = case(duration=6.0)
     result = identify([spoil(r) for r in simulate(truth)], truth.settings())
     assert result is None or result.blockers
+
+
+def test_a_fault_that_comes_later_is_said_beside_what_is_known():
+    truth = case()
+    records = simulate(truth)
+    identifier = Identifier(truth.settings())
+    for record in records:
+        identifier.add(record)
+    identifier.add(replace(records[-1], speed=-records[-1].speed))
+    result = identifier.estimate()
+    assert_right(result, truth)
+    assert result.doubts[-1].code is LimitationCode.VELOCITY_UNIT
+    for record in records[:4]:
+        identifier.add(replace(record, continues=False))
+    assert LimitationCode.VELOCITY_UNIT not in [doubt.code for doubt in identifier.finish().doubts]
 
 
 def test_the_same_records_give_the_same_result():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hd_monitor.acquisition.record import Record
-from hd_monitor.identification.fit.gauss_newton import NEGLIGIBLE, Problem
+from hd_monitor.identification.fit.gauss_newton import NEGLIGIBLE, FitStatus, Problem
 from hd_monitor.identification.fit.information import Information
 from hd_monitor.identification.fit.linearisation import Predictor
 from hd_monitor.identification.fit.noise import NoiseFloor
@@ -136,3 +136,22 @@ def test_no_step_makes_the_stiffness_negative():
         for part in (UNKNOWNS.circular_spline, UNKNOWNS.flexspline)
     )
     assert total < 0.8
+
+
+def test_a_fit_says_why_it_ended(fitted):
+    task, fit = fitted
+    assert fit.status is FitStatus.CONVERGED
+    far = UNKNOWNS.zero()
+    far[UNKNOWNS.stiffness] = 0.15
+    assert task.solve(far, rounds=1).status is FitStatus.ROUNDS_USED_UP
+    beyond = replace(task, active=ACTIVE | UNKNOWNS.mask(UNKNOWNS.delay))
+    late = UNKNOWNS.zero()
+    late[UNKNOWNS.delay] = UNKNOWNS.bounds()[UNKNOWNS.delay]
+    assert beyond.solve(late, rounds=0).status is FitStatus.ON_BOUND
+
+
+def test_a_fit_without_descent_says_so(fitted, monkeypatch):
+    task, _ = fitted
+    start = task.at(UNKNOWNS.zero())
+    monkeypatch.setattr(Problem, "at", lambda self, values: replace(start, values=values, cost=start.cost + 1.0))
+    assert task.solve(start, rounds=3).status is FitStatus.NO_DESCENT
