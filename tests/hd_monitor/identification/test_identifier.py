@@ -218,11 +218,14 @@ def test_a_fault_that_comes_later_is_said_beside_what_is_known():
         identifier.add(record)
     identifier.add(replace(records[-1], speed=-records[-1].speed))
     result = identifier.estimate()
+    assert result is not None
     assert_right(result, truth)
     assert result.doubts[-1].code is LimitationCode.VELOCITY_UNIT
     for record in records[:4]:
         identifier.add(replace(record, continues=False))
-    assert LimitationCode.VELOCITY_UNIT not in [doubt.code for doubt in identifier.finish().doubts]
+    result = identifier.finish()
+    assert result is not None
+    assert LimitationCode.VELOCITY_UNIT not in [doubt.code for doubt in result.doubts]
 
 
 def test_the_same_records_give_the_same_result():

@@ -180,7 +180,8 @@ class SegmentBuilder:
             raise ParameterError(
                 f"at {top_speed:.3g} rad/s and {1.0 / step:.4g} samples a second the lines and the natural frequency, "
                 f"{self.natural_frequency:g} Hz, ask for {steps} integration steps a sample, above {MOST_SUBSTEPS}: "
-                "such a signal shows nothing of them; check that positions are in rad on the output side, or sample faster"
+                "such a signal shows nothing of them; check that positions are in rad on the output side, or sample "
+                "faster"
             )
         own = own_acceleration(speed, step)
         known = np.full(angle.size, torque) if torque is not None else regress_torque(measured, angle, speed, own, step)
