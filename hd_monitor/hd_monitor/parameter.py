@@ -1,7 +1,7 @@
 """One parameter of a node or a command: its type, range and description, checked in one way everywhere."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
@@ -71,6 +71,23 @@ class Parameter:
                 f"{self.name} = {value!r} is outside [{self.low:g}, {self.high:g}] {self.unit}".rstrip()
                 + f"; {self.description}"
             )
+
+
+def number(
+    name: str, default: float | tuple[float, ...], unit: str, low: float, high: float, description: str
+) -> Parameter:
+    """Make a parameter that is a number or a list of numbers, whole if `default` is, from `low` to `high`."""
+    return Parameter(name=name, default=default, unit=unit, low=low, high=high, description=description)
+
+
+def choice(name: str, default: str, choices: Iterable[str], description: str) -> Parameter:
+    """Make a parameter that is one word of several."""
+    return Parameter(name=name, default=default, choices=tuple(choices), description=description)
+
+
+def switch(name: str, default: bool, description: str) -> Parameter:
+    """Make a parameter that is true or false."""
+    return Parameter(name=name, default=default, description=description)
 
 
 def check_all(parameters: Sequence[Parameter], given: Mapping[str, Any], *, owner: str) -> dict[str, Value]:

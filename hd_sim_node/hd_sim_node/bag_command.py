@@ -8,15 +8,13 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from hd_monitor.errors import HdMonitorError, ParameterError
+from hd_monitor.cli.main import guard
+from hd_monitor.errors import ParameterError
 
 from .defects import CUSTOM, DEFECTS
 from .parameters import NODE_PARAMETERS
 from .programmes import PROGRAMMES
 from .settings import RigSettings, pick
-
-UNUSABLE_INPUT = 2
-"""Exit status for parameters with which no rig can run, or a bag that cannot be written."""
 
 
 def build_parser() -> argparse.ArgumentParser:
@@ -59,20 +57,7 @@ def build_parser() -> argparse.ArgumentParser:
 def main(argv: Sequence[str] | None = None) -> int:
     """Run ``hd-sim-bag`` and return its exit status: 0 done, 2 refused."""
     arguments = build_parser().parse_args(argv)
-    try:
-        return _run(arguments)
-    except ModuleNotFoundError as error:
-        print(
-            f"hd-sim-bag: needs the Python package {error.name!r}, which is not installed; "
-            "pip install '.[offline]' in the checkout",
-            file=sys.stderr,
-        )
-        return UNUSABLE_INPUT
-    except HdMonitorError as error:
-        print(f"hd-sim-bag: {error}", file=sys.stderr)
-        return UNUSABLE_INPUT
-    except KeyboardInterrupt:
-        return 130
+    return guard("hd-sim-bag", lambda: _run(arguments))
 
 
 def _run(arguments: argparse.Namespace) -> int:
@@ -90,7 +75,7 @@ def _run(arguments: argparse.Namespace) -> int:
         print(f"hd-sim-bag: {remark}", file=sys.stderr)
     stamp = time.time() if arguments.start is None else arguments.start
     if not (math.isfinite(stamp) and 0.0 <= stamp < 2.0**31):
-        raise ParameterError(f"--start {stamp:g} is no time that a stamp can hold; give 0 to 2147483647")
+        raise ParameterError(f"--start {stamp:g} does not fit into a stamp; give 0 to 2147483647")
     begun = time.monotonic()
     tty = sys.stderr.isatty()
 

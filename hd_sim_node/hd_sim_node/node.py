@@ -1,7 +1,8 @@
 """The node ``hd_sim_node``: a simulated rig that publishes what hd_monitor listens to."""
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import lru_cache
 from typing import Any
 
 from rcl_interfaces.msg import SetParametersResult
@@ -15,10 +16,11 @@ from hd_monitor.ros.declaration import answer, declare, describe
 from hd_monitor.ros.managed_node import ManagedNode, logged, run
 from hd_monitor.ros.queue import queue_depth
 
+from .encoding import MESSAGE_TYPES, Encoder
 from .parameters import CHANGEABLE, NODE_PARAMETERS, PARAMETERS
-from .publishers import WRITERS, Writer
+from .ros_library import ROS, message_class
 from .settings import RigSettings, pick
-from .simulation import Simulation, check_stability
+from .simulation import Simulation, Stretch, check_stability
 from .stream import Stream
 
 NAME = "hd_sim_node"
@@ -48,7 +50,7 @@ class HdSimNode(ManagedNode):
         super().__init__(NAME, **options)
         self._simulation: Simulation | None = None
         self._stream: Stream | None = None
-        self._writers: dict[str, Writer] = {}
+        self._encode: Callable[[Stretch, int], dict[str, list[bytes]]] | None = None
         self._outlets: dict[str, Any] = {}
         self._timer: Any = None
         self._declare_all()
@@ -121,11 +123,11 @@ class HdSimNode(ManagedNode):
         scale = self.get_parameter("time_scale").value
         self._stream = Stream(self._simulation, scale)
         seconds = self.get_parameter("queue_seconds").value
+        self._encode = lru_cache(maxsize=1)(Encoder(settings, ROS).encode)
         for topic in self._simulation.topics:
-            writer = WRITERS[topic](settings)
+            kind = message_class(MESSAGE_TYPES[topic])
             depth = queue_depth(scale * self._simulation.message_rate(topic), seconds)
-            self._writers[topic] = writer
-            self._outlets[topic] = self.create_lifecycle_publisher(writer.message_type, topic, QoSProfile(depth=depth))
+            self._outlets[topic] = self.create_lifecycle_publisher(kind, topic, QoSProfile(depth=depth))
         return super().on_configure(state)
 
     @logged
@@ -149,15 +151,15 @@ class HdSimNode(ManagedNode):
         """Take the rig down."""
         for outlet in self._outlets.values():
             self.destroy_lifecycle_publisher(outlet)
-        self._outlets, self._writers = {}, {}
-        self._simulation = self._stream = None
+        self._outlets = {}
+        self._simulation = self._stream = self._encode = None
 
     # Work -----------------------------------------------------------------------------------------------------------
 
     def _turn(self) -> None:
         """Publish what is due."""
-        stream = self._stream
-        if stream is None:
+        stream, encode = self._stream, self._encode
+        if stream is None or encode is None:
             return
         if not stream.running:
             wanted = self.get_parameter("wait_for_subscribers").value
@@ -166,7 +168,7 @@ class HdSimNode(ManagedNode):
             stream.start(self._steady_time(), self.get_clock().now().nanoseconds)
         give_up = time.monotonic() + LONGEST_TURN
         for stretch, topic, row in stream.due(self._steady_time()):
-            self._outlets[topic].publish(self._writers[topic].write(stretch, row, stream.epoch))
+            self._outlets[topic].publish(encode(stretch, stream.epoch)[topic][row])
             if time.monotonic() > give_up:
                 break
         if stream.lag(self._steady_time()) > 1.0:

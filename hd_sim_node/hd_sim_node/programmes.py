@@ -10,7 +10,7 @@ from itertools import pairwise
 from typing import Any
 
 from hd_monitor.errors import ParameterError
-from hd_monitor.parameter import Parameter
+from hd_monitor.parameter import Parameter, number
 from hd_monitor.reducer import Reducer
 
 from .programme import NO_RIPPLE, Ripple, SpeedProgramme
@@ -19,20 +19,12 @@ Corners = tuple[list[float], list[float]]
 """Times [s] and wave-generator speeds [rpm]."""
 
 
-def _speed(name: str, default: float, description: str) -> Parameter:
-    return Parameter(
-        name=name,
-        default=default,
-        unit="rpm",
-        low=-20_000.0,
-        high=20_000.0,
-        description=f"wave generator: {description}",
-    )
+def _speed(name: str, default: float | tuple[float, ...], description: str) -> Parameter:
+    return number(name, default, "rpm", -20_000.0, 20_000.0, f"wave generator: {description}")
 
 
 def _rate(name: str, default: float, description: str) -> Parameter:
-    description = f"wave generator: {description}"
-    return Parameter(name=name, default=default, unit="rpm/s", low=1e-3, high=1e6, description=description)
+    return number(name, default, "rpm/s", 1e-3, 1e6, f"wave generator: {description}")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -144,12 +136,8 @@ PROGRAMMES: dict[str, ProgrammeKind] = {
         parameters=(
             _speed("dwell.first", 200.0, "first speed held"),
             _speed("dwell.last", 3000.0, "last speed held"),
-            Parameter(
-                name="dwell.step", default=100.0, unit="rpm", low=0.1, high=20_000.0, description="distance of speeds"
-            ),
-            Parameter(
-                name="dwell.time", default=5.0, unit="s", low=0.01, high=86_400.0, description="time at each speed"
-            ),
+            number("dwell.step", 100.0, "rpm", 0.1, 20_000.0, "step between the speeds"),
+            number("dwell.time", 5.0, "s", 0.01, 86_400.0, "time at each speed"),
             _rate("dwell.ramp_rate", 500.0, "change of speed between dwells"),
         ),
         corners=_dwell,
@@ -158,7 +146,7 @@ PROGRAMMES: dict[str, ProgrammeKind] = {
         summary="holds one speed",
         parameters=(
             _speed("fixed.speed", 850.0, "speed"),
-            Parameter(name="fixed.time", default=60.0, unit="s", low=0.01, high=1e7, description="length of one cycle"),
+            number("fixed.time", 60.0, "s", 0.01, 1e7, "length of one cycle"),
         ),
         corners=_fixed,
     ),
@@ -172,40 +160,20 @@ PROGRAMMES: dict[str, ProgrammeKind] = {
         corners=_sweep,
     ),
     "strokes": ProgrammeKind(
-        summary="goes to and fro over an arc of the output, as a robot's joint does",
+        summary="moves back and forth over an arc of the output, as a robot's joint does",
         parameters=(
-            Parameter(
-                name="strokes.angle", default=120.0, unit="deg", low=0.01, high=1e5, description="arc of the output"
-            ),
-            Parameter(
-                name="strokes.speed",
-                default=1500.0,
-                unit="rpm",
-                low=1.0,
-                high=20_000.0,
-                description="largest speed of the wave generator, reached where the arc is long enough",
-            ),
+            number("strokes.angle", 120.0, "deg", 0.01, 1e5, "arc of the output"),
+            number("strokes.speed", 1500.0, "rpm", 1.0, 20_000.0, "wave generator: largest speed, arc permitting"),
             _rate("strokes.acceleration", 3000.0, "acceleration and braking"),
-            Parameter(
-                name="strokes.pause", default=0.2, unit="s", low=0.0, high=3600.0, description="standstill at each end"
-            ),
+            number("strokes.pause", 0.2, "s", 0.0, 3600.0, "standstill at each end"),
         ),
         corners=_strokes,
     ),
     "profile": ProgrammeKind(
         summary="follows corners given one by one",
         parameters=(
-            Parameter(
-                name="profile.times", default=(0.0, 60.0), unit="s", low=0.0, description="times of the corners, from 0"
-            ),
-            Parameter(
-                name="profile.speeds",
-                default=(850.0, 850.0),
-                unit="rpm",
-                low=-20_000.0,
-                high=20_000.0,
-                description="wave generator: speeds at the corners",
-            ),
+            number("profile.times", (0.0, 60.0), "s", 0.0, math.inf, "times of the corners, from 0"),
+            _speed("profile.speeds", (850.0, 850.0), "speeds at the corners"),
         ),
         corners=_profile,
     ),

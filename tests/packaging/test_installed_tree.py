@@ -74,6 +74,15 @@ def test_libexec_command_starts_from_anywhere(tmp_path: Path) -> None:
 
 
 @needs_install
+def test_the_command_finds_the_demo_of_the_other_package() -> None:
+    pytest.importorskip("rclpy")
+    command = prefix_of("hd_monitor") / "lib/hd_monitor/hd-monitor"
+    done = subprocess.run([command, "demo", "--help"], capture_output=True, text=True, timeout=120, check=False)
+    assert done.returncode == 0, done.stderr
+    assert "--time-scale" in done.stdout
+
+
+@needs_install
 @pytest.mark.parametrize("package", PACKAGES)
 def test_every_source_file_is_installed(package: str) -> None:
     source = ROOT / package / package

@@ -52,4 +52,18 @@ def test_launch_loads_the_file(path: Path) -> None:
     launch = pytest.importorskip("launch", reason="ROS's launch is not on this machine")
     sources = pytest.importorskip("launch.launch_description_sources")
     description = sources.PythonLaunchDescriptionSource(str(path)).get_launch_description(launch.LaunchContext())
-    assert description.entities
+    assert description.get_launch_arguments()
+
+
+def test_the_demo_without_its_rig_says_what_to_build(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    launch = pytest.importorskip("launch", reason="ROS's launch is not on this machine")
+    sources = pytest.importorskip("launch.launch_description_sources")
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path))
+    service = launch.LaunchService()
+    file = str(ROOT / "hd_monitor" / "launch" / "demo.launch.py")
+    description = sources.PythonLaunchDescriptionSource(file).get_launch_description(service.context)
+    *arguments, start = description.entities
+    for argument in arguments:
+        argument.visit(service.context)
+    with pytest.raises(RuntimeError, match="colcon build --packages-up-to hd_sim_node"):
+        start.visit(service.context)

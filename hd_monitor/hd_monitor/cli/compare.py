@@ -56,7 +56,7 @@ def _result(path: Path, arguments: argparse.Namespace) -> Mapping[str, Any]:
     except OSError as error:
         raise BagError(f"{path} cannot be read: {error.strerror}; check the path") from None
     except ValueError as error:
-        raise BagError(f"{path} is no JSON ({error}); give what hd-monitor replay --json wrote, or a bag") from None
+        raise BagError(f"{path} is not JSON ({error}); give what hd-monitor replay --json wrote, or a bag") from None
     keys = ("joint", "verdict", "rms_curve")
     if not (
         isinstance(content, dict)

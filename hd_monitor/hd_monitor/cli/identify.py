@@ -4,12 +4,11 @@ import argparse
 import sys
 from pathlib import Path
 
-from ..errors import ParameterError
 from ..offline.identify import identify
 from ..offline.identify_result import as_dict, parameter_file
 from ..offline.identify_table import table
 from ..offline.parameters import parse_override
-from .replay import add_input_arguments, request_from, write_json
+from .replay import add_input_arguments, request_from, write_json, write_text
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -53,15 +52,8 @@ def run(arguments: argparse.Namespace) -> int:
         for reason in reasons:
             print(f"hd-monitor identify: not in {arguments.yaml}: {reason}", file=sys.stderr)
         if content:
-            _write(arguments.yaml, content)
+            write_text(arguments.yaml, content)
             print(f"parameters: {arguments.yaml}", file=text)
         else:
             print(f"hd-monitor identify: {arguments.yaml} is not written: there is nothing to put in", file=sys.stderr)
     return 0
-
-
-def _write(path: Path, content: str) -> None:
-    try:
-        path.write_text(content, encoding="utf-8")
-    except OSError as error:
-        raise ParameterError(f"{path} cannot be written: {error.strerror}; choose another file") from None

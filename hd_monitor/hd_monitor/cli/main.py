@@ -5,7 +5,7 @@ import importlib
 import os
 import signal
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from importlib.metadata import EntryPoint
 from typing import Protocol, cast
 
@@ -56,7 +56,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     origins = {name: f"from the package {entry.module.partition('.')[0]}" for name, entry in added.items()}
     texts = {**origins, **SIMULATOR_COMMANDS, **COMMANDS}
     chosen = next((word for word in words if word in texts), None)
-    try:
+
+    def work() -> int:
         for name, text in texts.items():
             subparser = subparsers.add_parser(name, help=text, description=text)
             if name == chosen:
@@ -65,6 +66,15 @@ def main(argv: Sequence[str] | None = None) -> int:
                 subparser.set_defaults(run=command.run)
         arguments = parser.parse_args(words)
         status: int = arguments.run(arguments)
+        return status
+
+    return guard(f"hd-monitor {chosen}", work)
+
+
+def guard(name: str, work: Callable[[], int]) -> int:
+    """Do a command's work; an error becomes one line that begins with `name`, and an exit status."""
+    try:
+        status = work()
         sys.stdout.flush()
         return status
     except BrokenPipeError:  # the reader has seen enough, as `| head` has; nor may the flush at exit complain
@@ -72,7 +82,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         return READER_GONE
     except (HdMonitorError, ModuleNotFoundError) as error:
         reason = _missing(error) if isinstance(error, ModuleNotFoundError) else error
-        print(f"hd-monitor {chosen}: {reason}", file=sys.stderr)
+        print(f"{name}: {reason}", file=sys.stderr)
         return UNUSABLE_INPUT
     except KeyboardInterrupt:
         return 130

@@ -84,18 +84,23 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def write_json(content: object, target: str) -> None:
-    """Write JSON to a file, or to standard output if that is called ``-``.
+    """Write JSON to a file, or to standard output if that is called ``-``; see :func:`write_text` for errors."""
+    text = json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False)
+    if target == "-":
+        print(text)
+    else:
+        write_text(Path(target), text + "\n")
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a text file.
 
     Raises
     ------
     ParameterError
         If the file cannot be written.
     """
-    text = json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False)
-    if target == "-":
-        print(text)
-        return
     try:
-        Path(target).write_text(text + "\n", encoding="utf-8")
+        path.write_text(text, encoding="utf-8")
     except OSError as error:
-        raise ParameterError(f"{target} cannot be written: {error.strerror}; choose another file") from None
+        raise ParameterError(f"{path} cannot be written: {error.strerror}; choose another file") from None

@@ -66,7 +66,7 @@ def test_a_recording_compared_with_itself_has_not_changed(
 
 @pytest.mark.parametrize(
     ("content", "words"),
-    [("{", "is no JSON"), ("{}", "is not what"), ('{"joints": []}', "no joint in common"), ("[1]", "is not what")],
+    [("{", "is not JSON"), ("{}", "is not what"), ('{"joints": []}', "no joint in common"), ("[1]", "is not what")],
 )
 def test_what_is_no_result_is_refused_in_one_line(
     bags: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str], content: str, words: str
