@@ -110,7 +110,7 @@ def check_all(parameters: Sequence[Parameter], given: Mapping[str, Any], *, owne
     values: dict[str, Value] = {parameter.name: parameter.default for parameter in parameters}
     for name, value in flatten(given).items():
         if name not in table:
-            raise ParameterError(f"{name} is no parameter of {owner}; see msgs_doc/parameters.md for their list")
+            raise ParameterError(f"{name} is not a parameter of {owner}; see msgs_doc/parameters.md for their list")
         values[name] = table[name].check(value)
     return values
 

@@ -1,4 +1,4 @@
-"""The simulated rig straight into a rosbag2 bag: the node's messages without ROS and without waiting for a clock."""
+"""The simulated rig written to a rosbag2 bag: the node's messages, without ROS and without waiting for a clock."""
 
 import heapq
 import math
@@ -42,7 +42,7 @@ class BagError(HdMonitorError):
 
 
 class BagSummary(NamedTuple):
-    """What has been written."""
+    """What was written."""
 
     path: Path
     duration: float
@@ -66,10 +66,10 @@ def write_bag(
     Parameters
     ----------
     rigs : RigSettings or sequence of RigSettings
-        A rig without an end runs through its programme once. Of several, each has its vibration topics below its
-        joint's name, and all share ``joint_states``.
+        A programme without end runs once. With several rigs, each has its vibration topics below its joint's name,
+        and all share ``joint_states``.
     path : path-like
-        Folder to be made.
+        Folder to create.
     storage : str
         ``'mcap'`` or ``'sqlite3'``.
     compression : str
@@ -77,7 +77,7 @@ def write_bag(
     start : int
         Stamp of the start [ns].
     namespace : str
-        Stands before every topic.
+        Prefix of every topic.
     progress : callable, optional
         Called now and then with the fraction done.
 
@@ -90,7 +90,7 @@ def write_bag(
     BagError
         If the folder exists or cannot be written, or joints share a name.
     ParameterError
-        If a rig is refused.
+        If a rig is unstable and ``unstable`` is ``refuse``.
     """
     rigs = [rigs] if isinstance(rigs, RigSettings) else list(rigs)
     names = [rig["joint_states.name"] for rig in rigs]

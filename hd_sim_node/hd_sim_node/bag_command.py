@@ -1,4 +1,4 @@
-"""The command ``hd-sim-bag``: a simulated rig into a bag, far faster than it would run."""
+"""The command ``hd-sim-bag``: write a simulated rig's messages to a bag, far faster than real time."""
 
 import argparse
 import math

@@ -1,4 +1,4 @@
-"""Defects to choose by a word: which spline is bad and how bad."""
+"""Defects to choose by name: which spline is bad and how bad."""
 
 import math
 
@@ -20,18 +20,18 @@ DEFECTS: dict[str, tuple[StiffnessSeries, StiffnessSeries]] = {
     "circular_spline": (HEALTHY, FAULTY),
     "both": (FAULTY, FAULTY),
 }
-"""(flexspline, circular spline) by the word that the parameter `defect` takes, beside ``custom``."""
+"""(flexspline, circular spline) by the value of the parameter `defect`, which may also be ``custom``."""
 
 
 def stiffness_of(
     defect: str, flexspline: StiffnessSeries, circular_spline: StiffnessSeries
 ) -> tuple[StiffnessSeries, StiffnessSeries]:
-    """(flexspline, circular spline) series of a defect; the two given count for ``custom``.
+    """Return the (flexspline, circular spline) series of a defect; ``custom`` takes the two given.
 
     Raises
     ------
     ParameterError
-        If the word is unknown or a spline's stiffness could vanish.
+        If the defect is unknown or the stiffness could vanish.
     """
     if defect != CUSTOM and defect not in DEFECTS:
         raise ParameterError(f"defect = {defect!r} is unknown; choose one of: {', '.join([*DEFECTS, CUSTOM])}")
@@ -39,6 +39,6 @@ def stiffness_of(
     total = math.fsum(abs(b) for s in series for b in s.beta)
     if total >= 1.0:
         raise ParameterError(
-            f"the β of both splines add up to {total:g}: the stiffness would vanish at places; keep their sum below 1"
+            f"the β of both splines add up to {total:g}: the stiffness could vanish; keep their sum below 1"
         )
     return series

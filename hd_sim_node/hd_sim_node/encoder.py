@@ -1,4 +1,4 @@
-"""The virtual joint: position, velocity and effort as a robot's driver reports them, at a rate of their own."""
+"""The virtual joint: position, velocity and effort as a robot's driver reports them, at their own rate."""
 
 import math
 from dataclasses import dataclass
@@ -92,7 +92,7 @@ class Joint:
         self._jitter = generator(seed, "joint jitter")
 
     def report(self, chunk: RigChunk) -> JointBatch:
-        """Joint states that fall into a stretch of motion."""
+        """Joint states within a stretch of motion."""
         settings, rig = self.settings, self._rig
         first, last = (math.ceil(index * settings.rate / rig.rate) for index in (chunk.first, chunk.first + len(chunk)))
         times = np.arange(first, last) / settings.rate

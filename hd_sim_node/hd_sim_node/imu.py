@@ -1,4 +1,4 @@
-"""What an IMU on the output link feels: its axes, the turning and gravity."""
+"""What an IMU on the output link measures: its axes, the rotation and gravity."""
 
 from typing import NamedTuple
 
@@ -38,7 +38,7 @@ def imu_readings(
         The axis along the motion, ``'y'`` or with a minus. The next one in the order x, y, z, x lies along the
         joint's axis and the remaining one points outwards, so that for y these are z and x.
     surroundings : Surroundings
-        With gravity's torque the joint's axis lies level and the tangential axis feels gravity; else it stands upright.
+        With a gravity torque the joint's axis is horizontal and the tangential axis feels gravity; else it is vertical.
     """
     sign = -1.0 if axis.startswith("-") else 1.0
     tangential = _AXES.index(axis[-1])
@@ -53,7 +53,7 @@ def imu_readings(
     else:
         force[:, along] = STANDARD_GRAVITY
     turning[:, along] = motion.speed + motion.velocity
-    # Mounted the other way round: turned by half a turn about the outward axis.
+    # Mounted the other way round: rotated by half a turn about the outward axis.
     force[:, tangential] *= sign
     force[:, along] *= sign
     turning[:, along] *= sign

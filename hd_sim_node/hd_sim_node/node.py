@@ -25,15 +25,15 @@ from .stream import Stream
 
 NAME = "hd_sim_node"
 PUBLISH_PERIOD = 0.01
-"""Seconds between two looks at the clock: what a message may come late by."""
+"""Seconds between two looks at the clock, and so the most by which a message is late."""
 LONGEST_TURN = 0.05
-"""Seconds that publishing may take before services and parameters get their turn."""
+"""Seconds of publishing after which services and parameters get their turn."""
 FLUSH_TIME = 5.0
 """Seconds in which subscribers must have taken the last messages before the process ends."""
 
 
 class HdSimNode(ManagedNode):
-    """Publishes a simulated rig: configured, it has its rig at the start; active, it runs; deactivated, it pauses.
+    """Publishes a simulated rig: set up by configure, running while active, paused by deactivate.
 
     Parameters
     ----------
@@ -58,8 +58,6 @@ class HdSimNode(ManagedNode):
         self.add_post_set_parameters_callback(self._apply)
         if self.get_parameter("autostart").value:
             self.bring_up()
-
-    # Parameters -----------------------------------------------------------------------------------------------------
 
     def _declare_all(self) -> None:
         given = {p.name: p.value for p in self.get_parameters(self.list_parameters([], 0).names)}
@@ -95,7 +93,7 @@ class HdSimNode(ManagedNode):
             self._stream.set_scale(self.get_parameter("time_scale").value, self._steady_time())
 
     def _remark(self) -> None:
-        """Log what is being simulated, and what the user may not have meant."""
+        """Log what is being simulated, and what the user may not have intended."""
         if self._simulation is None:
             return
         settings = self._simulation.settings
@@ -109,11 +107,9 @@ class HdSimNode(ManagedNode):
             if remark:
                 self.get_logger().warning(remark)
 
-    # Lifecycle ------------------------------------------------------------------------------------------------------
-
     @logged
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Set the rig up at its start, with its publishers."""
+        """Set up the rig and its publishers."""
         try:
             settings = self._settings()
             self._simulation = Simulation(settings)
@@ -132,7 +128,7 @@ class HdSimNode(ManagedNode):
 
     @logged
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Run, as soon as enough subscribers are there."""
+        """Run, as soon as there are enough subscribers."""
         self._timer = self.create_timer(PUBLISH_PERIOD, self._turn, clock=self._steady)
         wanted = self.get_parameter("wait_for_subscribers").value
         if wanted:
@@ -140,7 +136,7 @@ class HdSimNode(ManagedNode):
         return super().on_activate(state)
 
     def stop_work(self) -> None:
-        """Pause; activated again, the rig goes on where it was, with stamps of then."""
+        """Pause; once activated again, the rig continues where it was, stamped with the new time."""
         if self._timer is not None:
             self.destroy_timer(self._timer)
             self._timer = None
@@ -153,8 +149,6 @@ class HdSimNode(ManagedNode):
             self.destroy_lifecycle_publisher(outlet)
         self._outlets = {}
         self._simulation = self._stream = self._encode = None
-
-    # Work -----------------------------------------------------------------------------------------------------------
 
     def _turn(self) -> None:
         """Publish what is due."""

@@ -28,7 +28,7 @@ NO_RIPPLE = Ripple()
 
 
 class SpeedProgramme:
-    """Speed of the wave generator over time: straight lines between corners, once, several times or for ever.
+    """Speed of the wave generator over time: straight lines between corners, once, several times or forever.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ class SpeedProgramme:
     speeds : array_like, shape (corners,)
         Wave-generator speeds [rpm] there; negative ones turn back.
     cycles : int
-        How often the corners are run through; 0: without end.
+        How often the corners are run through; 0: forever.
     ripple : Ripple
         Multiplies the speed by ``1 + amplitude cos(order φ0 + phase)``, where φ0 is the angle without ripple.
 
@@ -68,7 +68,7 @@ class SpeedProgramme:
         self._check()
         lengths = np.diff(self.times)
         steps = 0.5 * RPM * (self.speeds[1:] + self.speeds[:-1]) * lengths
-        # Behind the last corner the last speed is held: a finite programme may be asked for a little more.
+        # The last speed is held beyond the last corner: joint states may fall a little beyond the end.
         self._slopes: FloatArray = np.append(RPM * np.diff(self.speeds) / lengths, 0.0)
         self._angles: FloatArray = np.concatenate([[0.0], np.cumsum(steps)])
 
@@ -76,7 +76,7 @@ class SpeedProgramme:
         times, speeds = self.times, self.speeds
         if times.ndim != 1 or times.shape != speeds.shape or times.size < 2:
             raise ParameterError(
-                f"{times.size} times and {speeds.size} speeds make no programme; give at least two of each"
+                f"{times.size} times and {speeds.size} speeds do not make a programme; give at least two of each"
             )
         if times[0] != 0.0 or not np.all(np.diff(times) > 0.0) or not np.all(np.isfinite(times)):
             raise ParameterError(f"times {times.tolist()} s do not rise from 0; give the corners in their order")
@@ -86,7 +86,7 @@ class SpeedProgramme:
             raise ParameterError(f"cycles = {self.cycles} is negative; give 0 for a programme without end")
         if self.cycles != 1 and speeds[-1] != speeds[0]:
             raise ParameterError(
-                f"a cycle ends at {speeds[-1]:g} rpm and the next begins at {speeds[0]:g} rpm: no drive can jump; "
+                f"a cycle ends at {speeds[-1]:g} rpm and the next begins at {speeds[0]:g} rpm: a drive cannot jump; "
                 "give cycles = 1 or a last corner at the first speed"
             )
         if not 0.0 <= self.ripple.amplitude < 1.0 or not all(map(math.isfinite, self.ripple)):
@@ -120,7 +120,7 @@ class SpeedProgramme:
         return speed * (1.0 + self.ripple.amplitude * np.cos(self.ripple.order * angle + self.ripple.phase))
 
     def acceleration(self, times: npt.ArrayLike) -> FloatArray:
-        """Wave-generator acceleration [rad/s²] at `times` [s], any shape; at a corner that of the piece behind it."""
+        """Wave-generator acceleration [rad/s²] at `times` [s], any shape; at a corner that of the next piece."""
         angle, speed, slope = self._plain(times)
         amplitude, order, phase = self.ripple
         turn = order * angle + phase

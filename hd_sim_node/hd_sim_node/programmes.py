@@ -1,4 +1,4 @@
-"""The speed programmes to choose from: what each is called, its parameters, and how its corners come about.
+"""The speed programmes to choose from: name, parameters and corners of each.
 
 A new programme is one function and one entry of :data:`PROGRAMMES`.
 """
@@ -37,8 +37,8 @@ class ProgrammeKind:
         What the wave generator does, in words.
     parameters : tuple of Parameter
     corners : callable
-        Of the parameters' values (by the part of the name after the dot), the reducer, and whether the cycle must
-        come back to where it began; returns times [s] and speeds [rpm].
+        From the parameters' values (by the part of the name after the dot), the reducer, and whether the cycle must
+        end at its first speed, to times [s] and speeds [rpm].
     """
 
     summary: str
@@ -56,7 +56,7 @@ def build_programme(
     name : str
         One of :data:`PROGRAMMES`.
     values : mapping
-        Values of its parameters by their full names, as ``dwell.step``; other names are left alone.
+        Values of its parameters by full name, as ``dwell.step``; other names are ignored.
     reducer : Reducer
     cycles : int
         How often it is run through; 0: without end.
@@ -65,7 +65,7 @@ def build_programme(
     Raises
     ------
     ParameterError
-        If the name is unknown or the values make no programme.
+        If the name is unknown or the values do not make a programme.
     """
     if name not in PROGRAMMES:
         raise ParameterError(f"programme = {name!r} is unknown; choose one of: {', '.join(PROGRAMMES)}")
@@ -76,7 +76,7 @@ def build_programme(
 
 
 def _chain(start: float, *pieces: tuple[float, float]) -> Corners:
-    """Corners from a start speed and pieces (duration [s], speed at the end [rpm]); pieces without duration vanish."""
+    """Make corners from a start speed and pieces (duration [s], final speed [rpm]); those without duration vanish."""
     times, speeds = [0.0], [start]
     for duration, speed in pieces:
         if times[-1] + duration > times[-1]:
@@ -106,7 +106,7 @@ def _sweep(values: Mapping[str, Any], reducer: Reducer, closed: bool) -> Corners
     duration = abs(last - first) / values["rate"]
     if duration == 0.0:
         raise ParameterError(
-            f"a sweep from {first:g} to {last:g} rpm goes nowhere; give two speeds, or programme fixed"
+            f"a sweep from {first:g} to {last:g} rpm does not change the speed; give two speeds, or programme fixed"
         )
     return _chain(first, (duration, last), *([(duration, first)] if closed else []))
 
@@ -178,4 +178,4 @@ PROGRAMMES: dict[str, ProgrammeKind] = {
         corners=_profile,
     ),
 }
-"""Programmes by the word that the parameter `programme` takes."""
+"""By the value of the parameter `programme`."""

@@ -21,12 +21,12 @@ PHASE_STEP = 0.25
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Surroundings:
-    """What acts on the rig beside the model's own torques.
+    """What acts on the rig besides the model's own torques.
 
     Parameters
     ----------
     gravity : float
-        Amplitude [N·m] of the torque of an eccentric load: it goes with the cosine of the output angle.
+        Amplitude [N·m] of an eccentric load's torque, a cosine of the output angle.
     gravity_angle : float
         Output angle [rad] at which gravity's torque is largest.
     rigid_body : bool
@@ -91,7 +91,7 @@ class Rig:
         May be replaced while it runs (attribute `model`): the state carries on.
     programme : SpeedProgramme
     rate : float
-        Samples per second [Hz]. The integration takes finer steps where accuracy asks for them.
+        Samples per second [Hz]. The integration takes finer steps where accuracy requires it.
     start_angle : float
         Output angle q [rad] at the start.
     surroundings : Surroundings, optional
@@ -121,7 +121,7 @@ class Rig:
         surroundings: Surroundings | None = None,
     ) -> None:
         if not (math.isfinite(rate) and rate > 0.0):
-            raise ParameterError(f"rate = {rate!r} Hz takes no samples; give a number above 0")
+            raise ParameterError(f"rate = {rate!r} Hz is not a sampling rate; give a number above 0")
         self.model = model
         self.programme = programme
         self.rate = rate
@@ -164,7 +164,7 @@ class Rig:
         return dynamics.inertia * (stiffness * vibration.displacement + damping * vibration.velocity)
 
     def advance(self, count: int) -> RigChunk:
-        """Run on for `count` samples.
+        """Simulate the next `count` samples.
 
         Raises
         ------
@@ -172,7 +172,7 @@ class Rig:
             If `count` is not positive.
         """
         if count < 1:
-            raise ParameterError(f"count = {count}: a stretch has at least one sample")
+            raise ParameterError(f"count = {count} is not a number of samples; give at least 1")
         model, inertia = self.model, self.model.dynamics.inertia
         index = self._next + np.arange(count + 1)
         substeps = self._substeps(index)

@@ -30,11 +30,11 @@ class SensorSettings:
     resolution : float
         Step of the values put out [rad/s²]; 0: continuous.
     stuck_after : float
-        Time [s] after which the last value is repeated for ever; 0: never.
+        Time [s] after which the last value is repeated forever; 0: never.
     jitter : float
         Standard deviation of the stamps [s].
     delay : float
-        What the stamps are late by [s].
+        Delay of the stamps [s].
     """
 
     noise: float = 0.0
@@ -49,7 +49,7 @@ class SensorSettings:
 
 
 class Accelerometer:
-    """Turns the rig's motion into samples; random numbers are drawn one a sample, so that cuts do not matter.
+    """Turns the rig's motion into samples; one random number is drawn for each, so that cuts do not matter.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ class Accelerometer:
         self._last = 0.0
 
     def measure(self, chunk: RigChunk) -> FloatArray:
-        """Samples [rad/s²] that it puts out for a stretch of motion, shape (samples,)."""
+        """Samples [rad/s²] of a stretch of motion, shape (samples,)."""
         settings = self.settings
         values = chunk.acceleration + chunk.rigid_acceleration + settings.offset
         values += settings.noise * self._noise.standard_normal(len(chunk))
@@ -88,11 +88,11 @@ class Accelerometer:
         return values
 
     def stamps(self, chunk: RigChunk) -> IntArray:
-        """Stamps [ns] since the start that it gives to the samples, shape (samples,)."""
+        """Stamps [ns] of the samples, since the start, shape (samples,)."""
         error = self.settings.jitter * self._jitter.standard_normal(len(chunk))
         return nanoseconds(chunk.times + self.settings.delay + error)
 
 
 def nanoseconds(times: FloatArray) -> IntArray:
-    """Whole nanoseconds of times [s]."""
+    """Convert times [s] to whole nanoseconds."""
     return np.asarray(np.rint(times * NANOSECONDS), dtype=np.int64)

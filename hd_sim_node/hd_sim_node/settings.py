@@ -1,4 +1,4 @@
-"""A rig's settings: its parameters, checked, read alike by the node, by the bag writer and by the tests."""
+"""A rig's settings: its parameters, checked, for the node, the bag writer and the tests alike."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -58,14 +58,13 @@ class RigSettings:
 
     @property
     def remarks(self) -> list[str]:
-        """What the user may not have meant, in sentences."""
-        found = []
-        if self["defect"] != CUSTOM and any((*self["flexspline.beta"], *self["circular_spline.beta"])):
-            found.append(
-                f"defect = {self['defect']!r} does not look at flexspline.beta and circular_spline.beta, which are "
-                "given; set defect to 'custom' for them to count"
-            )
-        return found
+        """Sentences about settings that the user may not have intended."""
+        if self["defect"] == CUSTOM or not any((*self["flexspline.beta"], *self["circular_spline.beta"])):
+            return []
+        return [
+            f"defect = {self['defect']!r} ignores the flexspline.beta and circular_spline.beta given; set defect to "
+            "'custom' to use them"
+        ]
 
     @property
     def reducer(self) -> Reducer:
@@ -98,7 +97,7 @@ class RigSettings:
 
     @property
     def surroundings(self) -> Surroundings:
-        """What acts beside the model's own torques."""
+        """What acts besides the model's own torques."""
         return Surroundings(
             gravity=self["torque.gravity"],
             gravity_angle=self["torque.gravity_angle"] * _DEGREE,
@@ -127,24 +126,24 @@ class RigSettings:
 
     @property
     def transport(self) -> TransportSettings:
-        """What happens to the vibration messages on their way."""
+        """What happens to the vibration messages in transit."""
         return fill_group(self.values, "transport", TransportSettings)
 
 
 def pick(given: Mapping[str, Any], also: Sequence[Parameter] = ()) -> dict[str, Any]:
-    """Pick the rig's parameters out of those of a file that it may share with the monitor.
+    """Pick the rig's parameters from a file that it may share with the monitor.
 
     Parameters
     ----------
     given : mapping
         Nested or dotted.
     also : sequence of Parameter
-        Further ones that belong to the caller, and are left out.
+        More parameters that belong to the caller, and are left out.
 
     Raises
     ------
     ParameterError
-        If a name belongs to neither the rig nor the monitor nor the caller: a misspelt one would do nothing.
+        If a name is unknown to the rig, the monitor and the caller: a misspelt one would have no effect.
     """
     flat = flatten(given)
     own = {parameter.name for parameter in PARAMETERS}
@@ -154,5 +153,5 @@ def pick(given: Mapping[str, Any], also: Sequence[Parameter] = ()) -> dict[str, 
         if name not in own | foreign and not name.startswith(tuple(f"{joint}." for joint in joints)):
             close = get_close_matches(name, own, 1)
             hint = f"; did you mean {close[0]}?" if close else "; see msgs_doc/parameters.md for their list"
-            raise ParameterError(f"{name} is no parameter of the rig{hint}")
+            raise ParameterError(f"{name} is not a parameter of the rig{hint}")
     return {name: value for name, value in flat.items() if name in own}

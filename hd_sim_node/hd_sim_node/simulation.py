@@ -7,7 +7,7 @@ import numpy as np
 
 from hd_monitor import contract
 from hd_monitor.arrays import FloatArray, IntArray
-from hd_monitor.contract import NANOSECONDS, Block
+from hd_monitor.contract import Block
 from hd_monitor.errors import ParameterError
 
 from .encoder import Joint, JointBatch
@@ -26,8 +26,6 @@ class Stretch:
 
     Attributes
     ----------
-    end : int
-        Simulated time [ns] at its end.
     motion : RigChunk
         What truly happened.
     samples : ndarray, shape (samples,)
@@ -41,7 +39,6 @@ class Stretch:
         By topic, of those published: which message (row of `samples`, `blocks` or `joint`) goes out when.
     """
 
-    end: int
     motion: RigChunk
     samples: FloatArray
     stamps: IntArray
@@ -75,7 +72,7 @@ class Simulation:
     Attributes
     ----------
     warning : str
-        What ``unstable: warn`` has to say; empty if there is nothing.
+        The warning of ``unstable: warn``, or empty.
 
     Examples
     --------
@@ -132,14 +129,14 @@ class Simulation:
         return self._rig.rate / (self._block_size if topic == contract.TORSIONAL_ACCELERATION_BLOCK else 1)
 
     def change(self, settings: RigSettings) -> None:
-        """Go on with another defect, torque, surroundings, sensor or transport; the motion carries on.
+        """Change defect, torque, surroundings, sensor or transport; the motion continues.
 
         Programme, rates, topics and seed stay as they were at the start.
 
         Raises
         ------
         ParameterError
-            As at the start, if vibration would grow without bound; nothing is changed then.
+            If vibration would grow without bound, as at the start; nothing is changed then.
         """
         self.warning = check_stability(settings)
         self._settings = settings
@@ -152,7 +149,7 @@ class Simulation:
                 transport.settings = settings.transport
 
     def __iter__(self) -> Iterator[Stretch]:
-        """Yield stretch after stretch until the programme or `duration` ends."""
+        """Yield the stretches until the programme or `duration` ends."""
         while (stretch := self.advance()) is not None:
             yield stretch
 
@@ -177,7 +174,6 @@ class Simulation:
             contract.JOINT_STATES: nanoseconds(joint.times),
         }
         return Stretch(
-            end=round((motion.first + count) * NANOSECONDS / self._rig.rate),
             motion=motion,
             samples=samples,
             stamps=stamps,
@@ -196,12 +192,12 @@ class Simulation:
 
 
 def check_stability(settings: RigSettings) -> str:
-    """Look for speeds of the programme at which vibration grows without bound, as ``unstable`` says.
+    """Search the programme for speeds at which vibration grows without bound, unless ``unstable`` is ``ignore``.
 
     Returns
     -------
     str
-        The warning; empty if there is nothing to warn of.
+        The warning; empty if there is none.
 
     Raises
     ------
@@ -211,8 +207,7 @@ def check_stability(settings: RigSettings) -> str:
     if settings["unstable"] == "ignore":
         return ""
     found = unstable_speeds(settings.model, settings.programme)
-    if not found:
-        return ""
-    if settings["unstable"] == "refuse":
-        raise ParameterError(describe(found))
-    return describe(found)
+    warning = describe(found) if found else ""
+    if warning and settings["unstable"] == "refuse":
+        raise ParameterError(warning)
+    return warning

@@ -1,4 +1,4 @@
-"""Does the rig's programme pass speeds at which the defects make vibration grow without bound?"""
+"""Speeds of the rig's programme at which the defects make vibration grow without bound."""
 
 from collections.abc import Iterable
 from typing import NamedTuple
@@ -35,7 +35,7 @@ def describe(unstable: Iterable[UnstableSpeed]) -> str:
     return (
         f"the defects are parametrically unstable {where}: at {worst.speed_rpm:g} rpm vibration grows by e every "
         f"{1.0 / worst.growth_rate:.2g} s, without bound; lower the β of the splines, raise dynamics.damping_ratio, or "
-        "leave these speeds out (unstable: warn lets it run all the same)"
+        "leave these speeds out (unstable: warn runs it all the same)"
     )
 
 

@@ -1,4 +1,4 @@
-"""The simulation against a clock: which messages are due, at what pace."""
+"""The simulation paced by a clock: which messages are due."""
 
 from collections.abc import Iterator
 
@@ -8,7 +8,7 @@ from .simulation import Simulation, Stretch
 
 
 class Stream:
-    """Hands out a simulation's messages when a clock says so.
+    """Hands out a simulation's messages when they are due.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ class Stream:
         return self._sent / NANOSECONDS
 
     def start(self, clock: float, stamp: int) -> None:
-        """Start, or go on after a pause, at `clock` [s]; messages of this moment are stamped `stamp` [ns]."""
+        """Start, or continue after a pause, at `clock` [s]; messages of this moment are stamped `stamp` [ns]."""
         self._anchor = (clock, self._sent)
         self.epoch = stamp - self._sent
         self.running = True
@@ -53,8 +53,8 @@ class Stream:
         self.running = False
 
     def set_scale(self, scale: float, clock: float) -> None:
-        """Go on at another pace from `clock` [s] on."""
-        # What could not be kept up with is not caught up with either.
+        """Change the pace from `clock` [s] on."""
+        # A backlog of more than a second is dropped, not caught up with.
         self._anchor = (clock, min(self._target(clock), self._sent + NANOSECONDS))
         self._scale = scale
 

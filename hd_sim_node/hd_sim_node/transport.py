@@ -1,4 +1,4 @@
-"""What happens to messages on their way: some are lost, some come twice, some come late."""
+"""What happens to messages in transit: some are lost, some arrive twice, some arrive late."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -14,7 +14,7 @@ _LATEST = 3.0  # message intervals: a late message lets up to three others pass
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TransportSettings:
-    """Fractions of a topic's messages that are lost, come twice, or come late (behind up to three later ones)."""
+    """Fractions of a topic's messages that are lost, arrive twice, or arrive late (after up to three later ones)."""
 
     loss: float = 0.0
     duplicates: float = 0.0
@@ -22,7 +22,7 @@ class TransportSettings:
 
 
 class Dispatch(NamedTuple):
-    """When which message goes out, in the order of going."""
+    """When each message is sent, in order."""
 
     due: IntArray
     """Simulated time [ns] since the start."""
@@ -31,14 +31,14 @@ class Dispatch(NamedTuple):
 
 
 class Transport:
-    """Sends the messages of one topic on their way."""
+    """Decides when the messages of one topic are sent, and which are lost."""
 
     def __init__(self, settings: TransportSettings, *, seed: int = 0, topic: str = "") -> None:
         self.settings = settings
         self._random = generator(seed, f"transport {topic}")
 
     def dispatch(self, due: IntArray) -> Dispatch:
-        """Decide over messages that should go out at `due` [ns], rising; none goes later than the last one should."""
+        """Schedule messages due at `due` [ns], rising; none is sent later than the last one is due."""
         settings, count = self.settings, due.size
         lost, twice, late, extent = self._random.random((count, 4)).T
         index = np.arange(count)

@@ -108,5 +108,5 @@ def test_check_all_fills_in_defaults():
 
 
 def test_check_all_refuses_unknown_names():
-    with pytest.raises(ParameterError, match=r"a\.sped is no parameter of a thing"):
+    with pytest.raises(ParameterError, match=r"a\.sped is not a parameter of a thing"):
         check_all((SPEED,), {"a.sped": 1.0}, owner="a thing")

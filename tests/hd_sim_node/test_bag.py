@@ -173,7 +173,7 @@ def test_a_folder_that_cannot_be_made_is_an_error_with_a_reason(tmp_path):
         write_bag(rig(), tmp_path / "file" / "bag")
 
 
-def test_progress_is_told(tmp_path):
+def test_progress_is_reported(tmp_path):
     told: list[float] = []
     write_bag(rig(duration=4.0), tmp_path / "bag", progress=told.append)
     assert told == sorted(told)

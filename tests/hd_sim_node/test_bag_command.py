@@ -40,7 +40,7 @@ def test_storage(tmp_path, storage):
     assert [file.suffix for file in (tmp_path / "bag").iterdir() if file.suffix != ".yaml"] == [suffix]
 
 
-def test_offers_what_the_writer_can():
+def test_offers_every_format_of_the_writer():
     choices = {action.dest: action.choices for action in build_parser()._actions}
     assert choices["storage"] == tuple(STORAGES)
     assert choices["compression"] == tuple(COMPRESSIONS)
@@ -119,7 +119,7 @@ def test_an_existing_folder_is_refused(tmp_path, capsys):
     assert "exists already" in capsys.readouterr().err
 
 
-def test_remarks_on_lists_that_do_not_count(tmp_path, capsys):
+def test_ignored_lists_cause_a_remark(tmp_path, capsys):
     assert main([*SHORT, "--out", str(tmp_path / "bag"), "--set", "flexspline.beta:=[0.1]"]) == 0
     assert "set defect to 'custom'" in capsys.readouterr().err
 

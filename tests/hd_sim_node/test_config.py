@@ -20,7 +20,7 @@ def load(file):
     return RigSettings.from_mapping(pick(node[1]["ros__parameters"], NODE_PARAMETERS))
 
 
-def test_there_are_some():
+def test_rig_files_are_found():
     assert len(FILES) >= 2
 
 

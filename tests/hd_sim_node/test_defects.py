@@ -72,7 +72,7 @@ class TestStability:
     def test_a_stable_speed_is_not(self):
         assert unstable_speeds(self.wild, fixed(2000.0)) == []
 
-    def test_a_sweep_is_searched_on_its_way(self):
+    def test_speeds_within_a_sweep_are_searched(self):
         sweep = build_programme("sweep", {"sweep.first": 2000.0, "sweep.last": 4000.0}, self.wild.reducer)
         found = unstable_speeds(self.wild, sweep)
         assert 3300.0 in [u.speed_rpm for u in found]

@@ -29,7 +29,7 @@ def test_axes_follow_each_other(axis, tangential, along):
     assert np.count_nonzero(turning.any(axis=0)) == 1
 
 
-def test_a_minus_turns_the_sensor_round():
+def test_a_minus_turns_the_sensor_around():
     plain = imu_readings(MOTION, SAMPLES, radius=0.5, axis="y", surroundings=AROUND)
     turned = imu_readings(MOTION, SAMPLES, radius=0.5, axis="-y", surroundings=AROUND)
     for one, other in zip(plain, turned, strict=True):

@@ -73,14 +73,14 @@ def test_waits_for_subscribers_so_that_the_first_message_is_not_lost(peer, start
     assert stamp_of(joints[0]) == blocks_of(blocks)[0].stamp
 
 
-def test_goes_on_without_end_until_interrupted(peer, start_module, messages):
+def test_runs_until_interrupted(peer, start_module, messages):
     blocks = peer.collect(messages.block, "torsional_acceleration/block", match=False)
     node = start_module(MODULE, *arguments(duration=0.0, wait_for_subscribers=0))
     peer.until(lambda: len(blocks) > 50, "blocks beyond the first second")
     assert node.interrupt() == 0, node.output
 
 
-def test_stays_after_the_programme_if_asked(peer, start_module, messages):
+def test_can_stay_after_the_programme(peer, start_module, messages):
     blocks = peer.collect(messages.block, "torsional_acceleration/block", match=False)
     joints = peer.collect(messages.joint, "joint_states", match=False)
     node = start_module(MODULE, *arguments(exit_at_end=False))
@@ -93,7 +93,7 @@ def test_stays_after_the_programme_if_asked(peer, start_module, messages):
 @pytest.mark.parametrize(
     ("changes", "said"),
     [
-        ({"fixed__sped": 5.0}, "fixed.sped is no parameter of the rig; did you mean fixed.speed?"),
+        ({"fixed__sped": 5.0}, "fixed.sped is not a parameter of the rig; did you mean fixed.speed?"),
         ({"defect": "rust"}, "choose one of"),
         ({"sensor__noise": -1.0}, "outside"),
         ({"seed": 1.5}, "wrong type"),

@@ -12,7 +12,7 @@ pytestmark = pytest.mark.ros
 ENDLESS = {"duration": 0.0, "wait_for_subscribers": 0}
 
 
-def test_comes_up_unconfigured_if_asked_and_follows_the_lifecycle(peer, start_module, messages):
+def test_can_start_unconfigured_and_follows_the_lifecycle(peer, start_module, messages):
     blocks = peer.collect(messages.block, "torsional_acceleration/block", match=False)
     start_module(MODULE, *arguments(**ENDLESS, autostart=False))
     assert state(peer, NODE) == "unconfigured"

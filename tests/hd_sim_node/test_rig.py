@@ -226,5 +226,5 @@ def test_a_rate_without_samples_is_refused(rate):
 
 
 def test_an_empty_stretch_is_refused():
-    with pytest.raises(ParameterError, match="at least one sample"):
+    with pytest.raises(ParameterError, match="count = 0 is not a number of samples"):
         Rig(MODEL, SWEEP, rate=1000.0).advance(0)

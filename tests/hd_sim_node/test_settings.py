@@ -60,7 +60,7 @@ def test_defaults_are_the_papers_rig():
         ("both", FAULTY, FAULTY),
     ],
 )
-def test_a_defect_by_its_word(defect, flexspline, circular_spline):
+def test_a_defect_by_its_name(defect, flexspline, circular_spline):
     model = rig(defect=defect).model
     assert (model.flexspline, model.circular_spline) == (flexspline, circular_spline)
 
@@ -77,7 +77,7 @@ def test_a_custom_defect_by_its_lists():
     assert settings.remarks == []
 
 
-def test_lists_that_do_not_count_are_remarked_on():
+def test_ignored_lists_cause_a_remark():
     assert "set defect to 'custom'" in rig(flexspline__beta=[0.05]).remarks[0]
     assert rig(flexspline__beta=[0.0]).remarks == []
 
@@ -133,11 +133,11 @@ def test_speed_ripple_reaches_the_programme():
         ({"sensor.rate": math.nan}, ParameterError, "outside"),
         ({"flexspline.beta": [0.1, 2.0]}, ParameterError, "outside"),
         ({"flexspline.beta": ["a"]}, ParameterError, "list of numbers"),
-        ({"nonsense": 1}, ParameterError, "no parameter of the rig"),
+        ({"nonsense": 1}, ParameterError, "not a parameter of the rig"),
         ({"reducer.circular_spline_teeth": 163}, GeometryError, "odd"),
         ({"defect": "custom", "flexspline.beta": [0.9, 0.9]}, ParameterError, "vanish"),
         ({"programme": "profile", "profile.times": [0.0, 1.0, 2.0]}, ParameterError, "3 times and 2 speeds"),
-        ({"programme": "sweep", "sweep.first": 300.0, "sweep.last": 300.0}, ParameterError, "goes nowhere"),
+        ({"programme": "sweep", "sweep.first": 300.0, "sweep.last": 300.0}, ParameterError, "does not change"),
     ],
 )
 def test_what_is_wrong_is_refused_at_once(changes, error, match):
@@ -163,7 +163,7 @@ class TestPick:
         with pytest.raises(ParameterError, match=r"sensor\.nose .* did you mean sensor\.noise"):
             pick({"sensor": {"nose": 1.0}})
 
-    def test_refuses_a_name_like_no_other(self):
+    def test_refuses_an_unknown_name(self):
         with pytest.raises(ParameterError, match="for their list"):
             pick({"zzz": 1.0})
 

@@ -57,7 +57,7 @@ def test_messages_go_out_in_order_and_when_their_newest_sample_is_there():
         ("none", False, set()),
     ],
 )
-def test_publishes_what_is_asked_for_and_joint_states_always(publish, imu, topics):
+def test_publishes_the_selected_form_and_always_joint_states(publish, imu, topics):
     assert set(simulate(publish=publish, publish_imu=imu).topics) == topics | {contract.JOINT_STATES}
 
 
@@ -85,7 +85,7 @@ def test_a_programme_without_end_goes_on():
         assert simulation.advance() is not None
 
 
-def test_no_rounding_costs_the_last_block():
+def test_rounding_does_not_lose_the_last_block():
     """0.3 s at 1 kHz is 299.99… samples in floating point."""
     assert sum(s.samples.size for s in simulate(duration=0.3, block_size=100)) == 300
 
@@ -179,12 +179,12 @@ class TestStability:
         with pytest.raises(ParameterError, match="unstable at 3300 rpm"):
             simulate(**WILD)
 
-    def test_or_warned_of(self):
+    def test_an_unstable_rig_can_run_with_a_warning(self):
         simulation = simulate(**WILD, unstable="warn")
         assert "3300 rpm" in simulation.warning
         assert simulation.advance() is not None
 
-    def test_or_let_run(self):
+    def test_an_unstable_rig_can_run_without_a_warning(self):
         assert simulate(**WILD, unstable="ignore").warning == ""
 
     def test_a_stable_one_has_no_warning(self):

@@ -57,7 +57,7 @@ def test_late_messages_let_later_ones_pass():
     st.floats(0, 1),
     st.integers(0, 1000),
 )
-def test_order_of_going_is_by_due_time_within_the_stretch(count, loss, duplicates, late, seed):
+def test_messages_are_sent_by_due_time_within_the_stretch(count, loss, duplicates, late, seed):
     due, row = dispatch(DUE[:count], seed=seed, loss=loss, duplicates=duplicates, late=late)
     assert due.size == row.size
     assert np.all(np.diff(due) >= 0)

@@ -44,7 +44,7 @@ def add_input_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def request_from(arguments: argparse.Namespace) -> Request:
-    """Gather what the arguments ask for.
+    """Gather the arguments into a request.
 
     Raises
     ------

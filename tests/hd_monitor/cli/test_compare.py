@@ -68,7 +68,7 @@ def test_a_recording_compared_with_itself_has_not_changed(
     ("content", "words"),
     [("{", "is not JSON"), ("{}", "is not what"), ('{"joints": []}', "no joint in common"), ("[1]", "is not what")],
 )
-def test_what_is_no_result_is_refused_in_one_line(
+def test_a_file_that_is_not_a_result_is_refused_in_one_line(
     bags: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str], content: str, words: str
 ) -> None:
     file = tmp_path / "x.json"

@@ -82,7 +82,7 @@ def test_a_wrong_natural_frequency_is_found_back_with_all_betas(sweep: Path, tmp
     assert joint["teeth"]["ranked"][0]["flexspline_teeth"] == 160
 
 
-def test_json_holds_everything_that_is_told(sweep: Path, tmp_path: Path) -> None:
+def test_json_holds_everything_that_is_printed(sweep: Path, tmp_path: Path) -> None:
     content = identified(tmp_path, str(sweep))
     assert {"joints", "bags", "notes", "confidence", "generator"} == set(content)
     assert content["confidence"] == 0.95
@@ -104,7 +104,7 @@ def test_json_holds_everything_that_is_told(sweep: Path, tmp_path: Path) -> None
     assert joint["directions"] == []
 
 
-def test_the_parameter_file_is_one_that_the_monitor_takes(sweep: Path, tmp_path: Path) -> None:
+def test_the_monitor_accepts_the_parameter_file(sweep: Path, tmp_path: Path) -> None:
     file = tmp_path / "found.yaml"
     identified(tmp_path, str(sweep), "-p", "dynamics.natural_frequency:=51.0", "--yaml", str(file))
     assert set(yaml.safe_load(file.read_text(encoding="utf-8"))) == {"hd_monitor_node"}
@@ -113,7 +113,7 @@ def test_the_parameter_file_is_one_that_the_monitor_takes(sweep: Path, tmp_path:
     assert settings.dynamics.damping_ratio == pytest.approx(0.023, rel=0.05)
 
 
-def test_two_recordings_tell_more_than_one(sweep: Path, tmp_path: Path) -> None:
+def test_two_recordings_say_more_than_one(sweep: Path, tmp_path: Path) -> None:
     again = rec.write(tmp_path / "again", rec.simulated(**(SWEEP | {"seed": 12})))  # the same stamps once more
     (one,) = identified(tmp_path, str(sweep))["joints"]
     (both,) = identified(tmp_path, str(sweep), str(again))["joints"]

@@ -31,7 +31,7 @@ def result_of(recording: Path, tmp_path: Path, *more: str) -> dict[str, Any]:
     return dict(json.loads(out.read_text(encoding="utf-8")))
 
 
-def test_json_is_the_contracts(recording: Path, tmp_path: Path) -> None:
+def test_json_follows_the_contract(recording: Path, tmp_path: Path) -> None:
     (joint,) = result_of(recording, tmp_path)["joints"]
     assert joint["joint"] == "joint"
     verdict = joint["verdict"]
@@ -182,7 +182,7 @@ def test_joint_states_alone_carry_a_report(tmp_path: Path, capsys: pytest.Captur
     assert "joint states; no faults in the data" in out
 
 
-def test_a_joint_among_several_is_asked_for(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_one_joint_of_several_can_be_selected(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     stamps = [rec.START + number * 10_000_000 for number in range(500)]
     still = (0.0, 0.0, 0.0)
     events = [rec.Event(stamp, "/joint_states", rec.joint_state(stamp, a=still, b=still)) for stamp in stamps]

@@ -62,7 +62,7 @@ def test_every_parameter_is_a_typed_field_of_its_group():
 @pytest.mark.parametrize(
     ("changes", "error", "match"),
     [
-        ({"reducer.teeth": 3}, ParameterError, r"reducer\.teeth is no parameter of a joint"),
+        ({"reducer.teeth": 3}, ParameterError, r"reducer\.teeth is not a parameter of a joint"),
         ({"reducer.mount": "glued"}, ParameterError, "choose one of"),
         ({"reducer.circular_spline_teeth": 161}, GeometryError, "odd"),
         ({"reducer.flexspline_teeth": 170}, GeometryError, "swapped"),

@@ -79,7 +79,7 @@ def test_a_verdict_that_differs_from_what_was_simulated_is_status_1(start_module
 
 
 @pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 130)])
-def test_an_interrupt_takes_both_nodes_along(start_module: Start, number: int, status: int) -> None:
+def test_an_interrupt_ends_both_nodes(start_module: Start, number: int, status: int) -> None:
     demo = start_module(COMMAND, "demo", "--time-scale", "1")
     wait_until(lambda: re.search(r"^ *\d+%", demo.output, re.MULTILINE) or not demo.running, "progress")
     nodes = children_of(demo)

@@ -109,7 +109,7 @@ def test_no_colour_where_it_is_not_wanted(monkeypatch: pytest.MonkeyPatch) -> No
     assert Screen(Terminal()).colour(Level.ERROR) == "ERROR"
 
 
-def test_plain_is_plain_on_a_terminal_too() -> None:
+def test_plain_prints_lines_on_a_terminal_too() -> None:
     out = Terminal()
     Screen(out, plain=True).update(view(), 0.5)
     assert "\x1b" not in out.getvalue()
