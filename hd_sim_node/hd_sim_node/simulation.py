@@ -96,14 +96,12 @@ class Simulation:
         self._joint = Joint(self._rig, settings.joint, seed=seed)
         self._block_size: int = settings["block_size"]
         self._sequence = 0
-        topics = []
-        if settings["publish"] in ("block", "both"):
-            topics.append(contract.TORSIONAL_ACCELERATION_BLOCK)
-        if settings["publish"] in ("samples", "both"):
-            topics.append(contract.TORSIONAL_ACCELERATION)
-        if settings["publish_imu"]:
-            topics.append(contract.IMU)
-        self._transports = {topic: Transport(settings.transport, seed=seed, topic=topic) for topic in topics}
+        published = {
+            contract.TORSIONAL_ACCELERATION_BLOCK: settings["publish"] in ("block", "both"),
+            contract.TORSIONAL_ACCELERATION: settings["publish"] in ("samples", "both"),
+            contract.IMU: settings["publish_imu"],
+        }
+        self._transports = {t: Transport(settings.transport, seed=seed, topic=t) for t in published if published[t]}
         loss = TransportSettings(loss=settings["joint_states.loss"])
         self._transports[contract.JOINT_STATES] = Transport(loss, seed=seed, topic=contract.JOINT_STATES)
         blocks = max(1, round(_STRETCH * rate / self._block_size))

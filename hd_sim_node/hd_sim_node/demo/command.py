@@ -141,9 +141,8 @@ def _conclude(plan: Plan, screen: Screen, view: View) -> bool:
         },
     )
     screen.line()
-    right = component == plan.expected
-    if right:
-        screen.line(f"The monitor names what was simulated: {plan.expected}.")
-    else:
+    if component != plan.expected:
         screen.line(f"The monitor says {component}, but {plan.expected} was simulated.")
-    return right
+        return False
+    screen.line(f"The monitor names what was simulated: {plan.expected}.")
+    return True
