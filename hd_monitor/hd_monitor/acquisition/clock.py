@@ -62,34 +62,33 @@ def recover_clock(times: FloatArray, period: float | None = None) -> Clock | Non
     Samples that arrive in another order than their stamps were either reordered on the way (sorting makes the stamps
     even) or have jittering stamps (sorting would scramble the signal). They are sorted where that leaves even stamps.
     """
-    order, duplicates = np.arange(times.size), 0
-    t, steps = times, times[1:] - times[:-1]
-    shortest = float(steps.min()) if steps.size else 0.0
-    if not shortest > 0.0:  # repeated stamps, or another order than theirs
-        order, duplicates = _without_duplicates(times)
-        t = times[order]
-        steps = t[1:] - t[:-1]
-        shortest = float(steps.min()) if steps.size else 0.0
+    order = np.arange(times.size)
+    rising = bool((times[1:] > times[:-1]).all())
+    if not rising:
+        order = np.sort(np.unique(times, return_index=True)[1])
     if order.size < 3:
         return None
-    if shortest < 0.0:
-        by_stamp = np.argsort(t, kind="stable")
-        if _unevenness(np.diff(t[by_stamp])) <= _DISORDERED:
-            order, t = order[by_stamp], t[by_stamp]
-            steps = np.diff(t)
-            shortest = float(steps.min())
+    if not rising:
+        by_stamp = order[np.argsort(times[order])]
+        if _unevenness(np.diff(times[by_stamp])) <= _DISORDERED:
+            order = by_stamp
+    t = times[order]
+    steps = t[1:] - t[:-1]
     typical = period or float(np.median(steps))
     if typical <= 0.0:
         return None
-    if float(steps.max()) < (1.0 + _EVEN) * typical and shortest > (1.0 - _EVEN) * typical:
-        number = np.arange(t.size)  # the common case: nothing missing, no jitter to speak of
-        start, fitted = _line(number, t)
-        apart = t - (start + fitted * number)
-        jitter = math.sqrt(float(apart @ apart) / t.size)
-        return Clock(order, number, start, fitted, jitter, duplicates)
-    uneven = _unevenness(steps)
+    even = float(steps.max()) < (1.0 + _EVEN) * typical and float(steps.min()) > (1.0 - _EVEN) * typical
+    number = np.arange(t.size) if even else _number(t, steps, typical, period)  # mostly nothing is missing
+    start, fitted = _line(number, t)
+    apart = t - (start + fitted * number)
+    jitter = math.sqrt(float(apart @ apart) / t.size)
+    return Clock(order, number, start, fitted, jitter, times.size - order.size)
+
+
+def _number(t: FloatArray, steps: FloatArray, typical: float, period: float | None) -> IntArray:
+    """Number stamps with holes or jitter, their typical step [s] and perhaps the true period [s] being known."""
     number = np.concatenate([[0], np.cumsum(np.maximum(np.rint(steps / typical).astype(np.int64), 1))])
-    if uneven > _EVEN:
+    if _unevenness(steps) > _EVEN:
         # With a line known, a single stamp shows its place more sharply than a difference of two stamps
         number = _settle(number, t)
         start, fitted = _line(number, t)
@@ -98,9 +97,7 @@ def recover_clock(times: FloatArray, period: float | None = None) -> Clock | Non
             span = min(_SMOOTHING, max(1, t.size // 4))
             typical = period or float(np.median(t[span:] - t[:-span])) / span
             number = _count_through_jitter(t, typical, exact=period is not None)
-    start, fitted = _line(number, t)
-    jitter = float(np.sqrt(np.mean((t - start - fitted * number) ** 2)))
-    return Clock(order, number, start, fitted, jitter, duplicates)
+    return number
 
 
 def _settle(number: IntArray, t: FloatArray) -> IntArray:
@@ -117,11 +114,6 @@ def _settle(number: IntArray, t: FloatArray) -> IntArray:
             break
         number = places
     return number
-
-
-def _without_duplicates(times: FloatArray) -> tuple[npt.NDArray[np.intp], int]:
-    _, first = np.unique(times, return_index=True)
-    return np.sort(first), int(times.size - first.size)
 
 
 def _unevenness(steps: FloatArray) -> float:

@@ -9,6 +9,8 @@ from ..arrays import FloatArray
 from ..errors import ParameterError
 from .parameters import ParametricModel
 
+_LOAD_STEPS = 10  # evenly spaced torques from zero (not included) to the largest
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StaticTestBed:
@@ -18,8 +20,6 @@ class StaticTestBed:
     ----------
     torque : float
         Largest torque applied [N·m].
-    load_steps : int
-        Torques from zero (not included) to the largest, evenly spaced.
     force_arm, dial_arm : float
         Distances of the force gauge and of the dial indicator from the axis [m].
     force_resolution : float
@@ -30,11 +30,10 @@ class StaticTestBed:
     Raises
     ------
     ParameterError
-        If a length, a torque or a number of steps is not positive, or a resolution is negative.
+        If a length or the torque is not positive, or a resolution is negative.
     """
 
     torque: float = 40.0
-    load_steps: int = 10
     force_arm: float = 0.4
     dial_arm: float = 0.4
     force_resolution: float = 0.1
@@ -42,7 +41,7 @@ class StaticTestBed:
 
     def __post_init__(self) -> None:
         """Refuse impossible values."""
-        for name in ("torque", "load_steps", "force_arm", "dial_arm"):
+        for name in ("torque", "force_arm", "dial_arm"):
             value = getattr(self, name)
             if not (np.isfinite(value) and value > 0):
                 raise ParameterError(f"{name} = {value!r} is not possible for a test bed; give a value above 0")
@@ -68,7 +67,7 @@ class StaticTestBed:
         angles = np.asarray(wave_generator_angles, dtype=np.float64)
         fluctuation = model.stiffness_fluctuation(angles / model.reducer.reduction)
         stiffness = model.dynamics.stiffness * (1.0 + fluctuation)
-        torque = self.torque * np.arange(1, self.load_steps + 1) / self.load_steps
+        torque = self.torque * np.arange(1, _LOAD_STEPS + 1) / _LOAD_STEPS
         twist = torque / stiffness[..., None]
         read_torque = _read(torque / self.force_arm, self.force_resolution) * self.force_arm
         read_twist = _read(twist * self.dial_arm, self.dial_resolution) / self.dial_arm

@@ -1,7 +1,7 @@
 """The cases that the figures are computed for, read from YAML: the paper's own, or a user's reducer."""
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -102,23 +102,16 @@ class Case:
         return acceleration * (self.sensor_radius / GRAVITY)
 
 
-class Cases(Mapping[str, Case]):
+class Cases(dict[str, Case]):
     """Cases by name; a missing one is an error that names the file."""
 
     def __init__(self, cases: Mapping[str, Case], source: str) -> None:
-        self._cases, self._source = dict(cases), source
+        super().__init__(cases)
+        self._source = source
 
-    def __getitem__(self, name: str) -> Case:
-        """Return the case called `name`."""
-        if name not in self._cases:
-            raise ParameterError(f"{self._source} has no case {name!r}, which a figure needs; has it been edited?")
-        return self._cases[name]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._cases)
-
-    def __len__(self) -> int:
-        return len(self._cases)
+    def __missing__(self, name: str) -> Case:
+        """Refuse an unknown name."""
+        raise ParameterError(f"{self._source} has no case {name!r}, which a figure needs; has it been edited?")
 
 
 def paper_file() -> Path:
@@ -196,11 +189,8 @@ def _case(source: str, values: Mapping[str, Any], *, shared: bool = False) -> Ca
     reducer, dynamics = settings.reducer, settings.dynamics
     torque = Torque(
         mean=reader.number("torque.mean", settings.load.torque),
-        load_fluctuation=reader.number("torque.load_fluctuation", 0.0),
-        load_phase=reader.number("torque.load_phase", 0.0),
         load_order=int(reader.number("torque.load_order", 2)),
-        drive_fluctuation=reader.number("torque.drive_fluctuation", 0.0),
-        drive_phase=reader.number("torque.drive_phase", 0.0),
+        **reader.numbers_below("torque", "load_fluctuation", "load_phase", "drive_fluctuation", "drive_phase"),
     )
     gear = _pitch_error(reader, reducer.circular_spline_teeth)
     if gear is not None:
@@ -208,7 +198,8 @@ def _case(source: str, values: Mapping[str, Any], *, shared: bool = False) -> Ca
             raise ParameterError(f"{source}: give circular_spline.beta or pitch_error, which determines it, not both")
         series["circular_spline"] = gear.errors.stiffness_series(gear.sensitivity)
     model = ParametricModel(reducer=reducer, dynamics=dynamics, torque=torque, **series)
-    resonance = 60.0 * dynamics.natural_frequency / reducer.circular_spline_order
+    fn = dynamics.natural_frequency
+    resonance = 60.0 * fn / reducer.circular_spline_order
     top = 1.8 * resonance
     case = Case(
         name=source.rpartition(": ")[2],
@@ -218,20 +209,12 @@ def _case(source: str, values: Mapping[str, Any], *, shared: bool = False) -> Ca
         speed=reader.number("speed", resonance / 2.0),
         speeds=Range(*reader.triple("speeds", ("start", "stop", "step"), (top / 30.0, top, top / 30.0))),
         scales=Range(*reader.triple("scales", ("start", "stop", "step"), (0.0, 4.0, 0.2))),
-        sweep=Sweep(
-            *reader.triple(
-                "sweep",
-                ("start", "stop", "rate"),
-                (1.0, 2.2 * dynamics.natural_frequency, 0.6 * (dynamics.natural_frequency / 55.0) ** 2),
-            )
-        ),
+        sweep=Sweep(*reader.triple("sweep", ("start", "stop", "rate"), (1.0, 2.2 * fn, 0.6 * (fn / 55.0) ** 2))),
         static_step=np.deg2rad(reader.number("static_test.step", 30.0)),
         static_test=StaticTestBed(
-            torque=reader.number("static_test.torque", 40.0),
-            force_arm=reader.number("static_test.force_arm", 0.4),
-            dial_arm=reader.number("static_test.dial_arm", 0.4),
-            force_resolution=reader.number("static_test.force_resolution", 0.1),
-            dial_resolution=reader.number("static_test.dial_resolution", 1e-6),
+            **reader.numbers_below(
+                "static_test", "torque", "force_arm", "dial_arm", "force_resolution", "dial_resolution"
+            )
         ),
         pitch_error=gear,
         ignored=tuple(sorted(reader.left)),

@@ -1,17 +1,25 @@
-"""Draws panels with matplotlib; the only module here that imports it."""
+"""Drawing of panels with matplotlib; no other module here imports it."""
 
 import io
+from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import MultipleLocator
 
-from .exhibit import Curve, Exhibit, Mark, Panel, Surface
+from .exhibit import Curve, Exhibit, Mark, Panel, Style, Surface
 
 _WIDTH, _HEIGHT = 5.6, 3.8  # inches of a panel
 _DPI = 110
 _COLOURS = ("#1f5fa8", "#d1603d", "#3f8f5b", "#8a5aa8", "#7a6a3a", "#4f4f4f")
+_LINES: dict[Style, dict[str, Any]] = {
+    "line": {"linestyle": "-", "linewidth": 1.2},
+    "fine": {"linestyle": "-", "linewidth": 0.4},
+    "dashed": {"linestyle": "--", "linewidth": 1.2},
+    "points": {"linestyle": "", "marker": "o", "markersize": 3.5},
+    "dotted points": {"linestyle": ":", "linewidth": 1.0, "marker": "*", "markersize": 6},
+}
 _PER_ROW = 2
 _MOST_COLUMNS = 4  # of a legend
 
@@ -76,34 +84,20 @@ def _draw_curve(axes: Axes, curve: Curve, colour: str) -> None:
     label = curve.label or "_"  # matplotlib leaves labels that start so out of the legend
     if curve.style == "stems":
         axes.vlines(curve.x, 0.0, curve.y, color=colour, label=label, linewidth=6.0, alpha=0.45)
-    elif curve.style == "points":
-        axes.plot(curve.x, curve.y, "o", color=colour, markersize=3.5, label=label)
-    elif curve.style == "dotted points":
-        axes.plot(curve.x, curve.y, ":", marker="*", color=colour, linewidth=1.0, markersize=6, label=label)
-    elif curve.style == "fine":
-        axes.plot(curve.x, curve.y, "-", color=colour, linewidth=0.4, label=label)
     else:
-        axes.plot(curve.x, curve.y, "--" if curve.style == "dashed" else "-", color=colour, linewidth=1.2, label=label)
+        axes.plot(curve.x, curve.y, color=colour, label=label, **_LINES[curve.style])
 
 
 def _draw_surface(axes: Axes, surface: Surface, figure: Figure) -> None:
-    # The level in the middle of the colours; what lies far below it must not drown in one dark tone
+    # The level in the middle of the colours; values far below it must not all get one dark tone
     largest = max(float(surface.values.max()), -2.5 * float(surface.values.min()))
-    image = axes.pcolormesh(
-        surface.x,
-        surface.y,
-        surface.values,
-        cmap="RdBu_r",
-        vmin=-largest,
-        vmax=largest,
-        shading="gouraud",
-        rasterized=True,
-    )
+    grid = surface.x, surface.y, surface.values
+    image = axes.pcolormesh(*grid, cmap="RdBu_r", vmin=-largest, vmax=largest, shading="gouraud", rasterized=True)
     bar = figure.colorbar(image, ax=axes)
     bar.set_label(surface.label, fontsize=9)
     bar.ax.tick_params(labelsize=8)
     if surface.values.min() < surface.level < surface.values.max():
-        axes.contour(surface.x, surface.y, surface.values, levels=[surface.level], colors="black", linewidths=1.4)
+        axes.contour(*grid, levels=[surface.level], colors="black", linewidths=1.4)
 
 
 def _make_room(axes: Axes, *, log: bool) -> None:

@@ -49,6 +49,10 @@ class Reader:
             raise ParameterError(f"{self.source}: {name} = {value!r} is not a finite number")
         return float(value)
 
+    def numbers_below(self, prefix: str, *names: str) -> dict[str, float]:
+        """Take those finite numbers below `prefix` that are given, by their names there."""
+        return {name: self.number(f"{prefix}.{name}", 0.0) for name in names if f"{prefix}.{name}" in self.left}
+
     def numbers(self, name: str) -> tuple[float, ...]:
         """Take a list of numbers; none if it is not given."""
         value = self.left.pop(name, ())

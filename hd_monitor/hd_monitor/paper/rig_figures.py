@@ -58,10 +58,7 @@ def beat_panel(case: Case, record: SteadyRecord) -> Panel:
         title="Time history",
         x_label="time (s)",
         y_label="tangential acceleration (g)",
-        curves=(
-            Curve(x=times, y=values[part]),
-            Curve(x=times, y=measured.envelope[part], label=label, style="dashed"),
-        ),
+        curves=(Curve(x=times, y=values[part]), Curve(x=times, y=measured.envelope[part], label=label, style="dashed")),
     )
 
 

@@ -8,7 +8,7 @@ from ..process import set_up_process
 def main(args: list[str] | None = None) -> int:
     """Run the node; return its exit status."""
     set_up_process()
-    from .node import main as run  # it brings numpy along
+    from .node import main as run  # imports numpy
 
     return run(args)
 

@@ -21,7 +21,7 @@ from .subscriptions import DrainedSubscription
 
 NAME = "hd_monitor_node"
 DRAIN_PERIOD = 0.05
-"""Seconds between two looks into the queues: what a verdict may come late by."""
+"""Seconds between two looks into the queues: the largest delay of a verdict."""
 STATUS_PERIOD = 1.0
 """Seconds between two statuses (REP-107)."""
 
@@ -127,38 +127,24 @@ class HdMonitorNode(ManagedNode):
         now = self._now()
         for channel in self._channels:
             channel.feed(motion, now, self._explain_motion)
-            if transitions := channel.watch.take_transitions():
-                for status in transitions:
-                    self._log_transition(channel, status)
-                self._publish([(channel, status) for status in transitions])
-            self._log_errors(channel)
+            for status in self._log_news(channel):
+                self._publish([(channel, status)])
 
     def _publish_all(self) -> None:
         now = self._now()
         for channel in self._channels:
             channel.check(now, self._explain_motion)
-            for status in channel.watch.take_transitions():
-                self._log_transition(channel, status)
-            self._log_errors(channel)
+            self._log_news(channel)
         self._publish([(channel, channel.watch.status()) for channel in self._channels])
 
     def _publish(self, statuses: list[tuple[JointChannel, Status]]) -> None:
-        """Publish statuses, several of one joint in several messages."""
-        while statuses:
-            seen: set[str] = set()
-            later, bundle = [], []
-            for channel, status in statuses:
-                if channel.joint in seen:
-                    later.append((channel, status))
-                    continue
-                seen.add(channel.joint)
-                name = f"{self.get_fully_qualified_name()}: {channel.joint} reducer"
-                bundle.append(diagnostic_status(status, name))
-            self._diagnostics.publish(diagnostic_array(bundle, self.get_clock().now().to_msg()))
-            statuses = later
+        """Publish one status each of some joints."""
+        name = self.get_fully_qualified_name()
+        bundle = [diagnostic_status(status, f"{name}: {channel.joint} reducer") for channel, status in statuses]
+        self._diagnostics.publish(diagnostic_array(bundle, self.get_clock().now().to_msg()))
 
     def _now(self) -> int:
-        """Time by which silence counts [ns]: simulated where that is asked for, else one that nobody can set back."""
+        """Time by which silence counts [ns]: simulated with ``use_sim_time``, else a clock that cannot be set back."""
         simulated = self.get_parameter("use_sim_time").value
         return int((self.get_clock() if simulated else self._steady).now().nanoseconds)
 
@@ -175,11 +161,15 @@ class HdMonitorNode(ManagedNode):
         else:
             self.get_logger().error(text)
 
-    def _log_errors(self, channel: JointChannel) -> None:
-        """Log a traceback the first time it appears."""
+    def _log_news(self, channel: JointChannel) -> list[Status]:
+        """Log and return a joint's transitions, and log a traceback the first time it appears."""
+        transitions = channel.watch.take_transitions()
+        for status in transitions:
+            self._log_transition(channel, status)
         if channel.watch.last_error and channel.watch.last_error not in self._logged:
             self._logged.add(channel.watch.last_error)
             self.get_logger().error(f"{channel.joint}: {channel.watch.last_error}")
+        return transitions
 
     # Requests -------------------------------------------------------------------------------------------------------
 

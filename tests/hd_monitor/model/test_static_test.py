@@ -1,3 +1,5 @@
+import math
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -50,7 +52,7 @@ def test_too_few_positions_are_refused():
         fit_stiffness(every_90, np.ones(every_90.size))
 
 
-@pytest.mark.parametrize("wrong", [{"torque": 0.0}, {"dial_arm": -1.0}, {"load_steps": 0}])
+@pytest.mark.parametrize("wrong", [{"torque": 0.0}, {"dial_arm": -1.0}, {"force_arm": math.nan}])
 def test_an_impossible_bed_is_refused(wrong):
     with pytest.raises(ParameterError, match="not possible for a test bed"):
         StaticTestBed(**wrong)
