@@ -69,7 +69,8 @@ class MotionTrack:
     """
 
     def __init__(self) -> None:
-        self.clear()
+        self._times = np.empty(0)
+        self._rows = np.empty((0, 3))
 
     def extend(self, times: FloatArray, rows: FloatArray) -> BoolArray:
         """Append messages: times [s], shape (N,), increasing, and rows (position, velocity, effort), shape (N, 3).
@@ -100,8 +101,8 @@ class MotionTrack:
 
     def clear(self) -> None:
         """Forget everything."""
-        self._times: FloatArray = np.empty(0)
-        self._rows: FloatArray = np.empty((0, 3))
+        self._times = np.empty(0)
+        self._rows = np.empty((0, 3))
 
     def at(self, times: FloatArray) -> Motion:
         """Interpolate at rising `times` [s], shape (N,); NaN outside of the track and in its holes.
