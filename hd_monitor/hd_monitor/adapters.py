@@ -31,6 +31,9 @@ class Sink(Protocol):
     def add_motion(self, stamps: IntArray, position: FloatArray, velocity: FloatArray, effort: FloatArray) -> None:
         """Take joint states [rad, rad/s, N·m] with their stamps [ns]."""
 
+    def add_torque(self, stamps: IntArray, torque: FloatArray) -> None:
+        """Take transmitted torque [N·m] with its stamps [ns]."""
+
     def reject(self, reason: str) -> None:
         """Count a message that says nothing, and remember why."""
 
@@ -64,10 +67,12 @@ class Inputs:
         for item in decode(messages, self._settings):
             if isinstance(item, str):
                 self._sink.reject(item)
-            elif isinstance(item, Stamped):
-                self._sink.add_vibration(item.stamps, item.values)
-            else:
+            elif not isinstance(item, Stamped):
                 self._sink.add_block(item)
+            elif quantity is Quantity.TORQUE:
+                self._sink.add_torque(item.stamps, item.values)
+            else:
+                self._sink.add_vibration(item.stamps, item.values)
 
     def _add_motion(self, messages: Sequence[bytes]) -> None:
         groups, faults = cdr.decode_joint_states(messages)

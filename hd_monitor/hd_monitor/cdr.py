@@ -24,9 +24,10 @@ class Samples(NamedTuple):
     stamps: IntArray
     """Header stamps [ns], shape (N,)."""
     linear: FloatArray
-    """Linear acceleration [m/s²], shape (N, 3)."""
+    """Linear acceleration [m/s²], or force [N] of a WrenchStamped; shape (N, 3)."""
     angular: FloatArray
-    """Angular acceleration [rad/s²] of an AccelStamped, angular velocity [rad/s] of an Imu; shape (N, 3)."""
+    """Angular acceleration [rad/s²] of an AccelStamped, angular velocity [rad/s] of an Imu, torque [N·m] of a
+    WrenchStamped; shape (N, 3)."""
     faults: tuple[str, ...]
     """The reason for each message that could not be read."""
 
@@ -66,7 +67,7 @@ def _doubles(values: npt.NDArray[np.void]) -> FloatArray:
     return values.astype(np.float64)
 
 
-def _parse_accel(message: bytes) -> Layout[None]:
+def _parse_vectors(message: bytes) -> Layout[None]:
     template = Template(message)
     template.stamp()
     template.field("linear", "f8", 3)
@@ -137,8 +138,8 @@ def _samples(messages: Sequence[bytes], parse: Callable[[bytes], Layout[None]]) 
     return Samples(stamps[good], linear[good], angular[good], reasons)
 
 
-def decode_accel_stamped(messages: Sequence[bytes]) -> Samples:
-    """Decode serialised ``geometry_msgs/AccelStamped`` messages, in their order.
+def decode_vectors(messages: Sequence[bytes]) -> Samples:
+    """Decode serialised ``geometry_msgs/AccelStamped`` or ``WrenchStamped`` messages, in their order.
 
     Parameters
     ----------
@@ -150,11 +151,11 @@ def decode_accel_stamped(messages: Sequence[bytes]) -> Samples:
     Samples
         Unreadable messages are left out of the arrays and listed in `faults`.
     """
-    return _samples(messages, _parse_accel)
+    return _samples(messages, _parse_vectors)
 
 
 def decode_imu(messages: Sequence[bytes]) -> Samples:
-    """Decode serialised ``sensor_msgs/Imu`` messages, in their order; see :func:`decode_accel_stamped`."""
+    """Decode serialised ``sensor_msgs/Imu`` messages, in their order; see :func:`decode_vectors`."""
     return _samples(messages, _parse_imu)
 
 
@@ -195,7 +196,8 @@ def decode_multi_arrays(messages: Sequence[bytes]) -> tuple[list[MultiArrays], l
 
 
 _PARSERS: dict[str, Callable[[bytes], Layout[Any]]] = {
-    "geometry_msgs/msg/AccelStamped": _parse_accel,
+    "geometry_msgs/msg/AccelStamped": _parse_vectors,
+    "geometry_msgs/msg/WrenchStamped": _parse_vectors,
     "sensor_msgs/msg/Imu": _parse_imu,
     "sensor_msgs/msg/JointState": _parse_joint_state,
     "std_msgs/msg/Float64MultiArray": _parse_multi_array,
@@ -210,8 +212,8 @@ def record_layout(message: bytes, message_type: str) -> np.dtype[np.void]:
     message : bytes
         One such message, with its 4-byte CDR header.
     message_type : str
-        One of ``geometry_msgs/msg/AccelStamped``, ``sensor_msgs/msg/Imu``, ``sensor_msgs/msg/JointState``,
-        ``std_msgs/msg/Float64MultiArray``.
+        One of ``geometry_msgs/msg/AccelStamped``, ``geometry_msgs/msg/WrenchStamped``, ``sensor_msgs/msg/Imu``,
+        ``sensor_msgs/msg/JointState``, ``std_msgs/msg/Float64MultiArray``.
 
     Returns
     -------

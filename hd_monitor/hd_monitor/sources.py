@@ -23,6 +23,7 @@ class Quantity(StrEnum):
 
     VIBRATION = "vibration"
     MOTION = "motion"
+    TORQUE = "torque"
 
 
 class Stamped(NamedTuple):
@@ -31,7 +32,7 @@ class Stamped(NamedTuple):
     stamps: IntArray
     """Sampling instants [ns], shape (N,)."""
     values: FloatArray
-    """θ'' [rad/s²] of a vibration; shape (N,)."""
+    """θ'' [rad/s²] of a vibration, or torque [N·m]; shape (N,)."""
 
 
 Decoded = Stamped | contract.Block | str
@@ -48,7 +49,7 @@ class Source:
     ----------
     quantity : Quantity
     topic : str
-        Relative name.
+        Its name, relative unless the parameters say otherwise.
     type : str
         ROS message type, as ``package/Type``.
     decode : callable or None
@@ -69,7 +70,7 @@ class Source:
 
     def name_below(self, joint: str | None) -> str:
         """Name of the topic where several joints are watched, each with its own topics below its name."""
-        shared = joint is None or self.quantity is Quantity.MOTION
+        shared = joint is None or self.quantity is Quantity.MOTION or self.topic.startswith("/")
         return self.topic if shared else f"{joint}/{self.topic}"
 
 
@@ -95,7 +96,7 @@ def _decode_blocks(messages: Sequence[bytes], settings: "JointSettings") -> Iter
 
 
 def _decode_accelerations(messages: Sequence[bytes], settings: "JointSettings") -> Iterator[Decoded]:
-    samples = cdr.decode_accel_stamped(messages)
+    samples = cdr.decode_vectors(messages)
     return _samples(samples, samples.angular[:, 2])
 
 
@@ -103,6 +104,11 @@ def _decode_imu(messages: Sequence[bytes], settings: "JointSettings") -> Iterato
     samples = cdr.decode_imu(messages)
     given = settings.input
     return _samples(samples, _along(given.axis, samples.linear) * (1.0 / given.sensor_radius))
+
+
+def _decode_wrench(messages: Sequence[bytes], settings: "JointSettings") -> Iterator[Decoded]:
+    samples = cdr.decode_vectors(messages)
+    return _samples(samples, _along(settings.load.axis, samples.angular))
 
 
 def _along(axis: str, vectors: FloatArray) -> FloatArray:
@@ -151,3 +157,14 @@ INPUT_SOURCES: Mapping[str, Source] = {
     "joint_velocity": JOINT_STATES,
 }
 """The words of ``input.source``; where joint states carry the vibration signal too, no sensor is needed."""
+
+LOAD_SOURCES: Mapping[str, Source | None] = {
+    "auto": None,
+    "effort": None,
+    "wrench": Source(
+        quantity=Quantity.TORQUE, topic=contract.WRENCH, type="geometry_msgs/WrenchStamped", decode=_decode_wrench
+    ),
+    "parameter": None,
+    "unknown": None,
+}
+"""The words of ``load.source``; None where the torque needs no topic besides joint states."""

@@ -51,6 +51,13 @@ def imu(stamp: int, linear: tuple[float, float, float]) -> bytes:
     return bytes(STORE.serialize_cdr(message, message.__msgtype__))
 
 
+def wrench(stamp: int, torque: tuple[float, float, float]) -> bytes:
+    vector = T["geometry_msgs/msg/Vector3"]
+    body = T["geometry_msgs/msg/Wrench"](vector(7.0, 8.0, 9.0), vector(*torque))
+    message = T["geometry_msgs/msg/WrenchStamped"](header(stamp), body)
+    return bytes(STORE.serialize_cdr(message, message.__msgtype__))
+
+
 class Recorder:
     """A sink that keeps everything."""
 
@@ -58,6 +65,7 @@ class Recorder:
         self.vibration: list[tuple[int, float]] = []
         self.blocks: list[Block] = []
         self.motion: list[tuple[int, float, float, float]] = []
+        self.torque: list[tuple[int, float]] = []
         self.rejected: list[str] = []
 
     def add_vibration(self, stamps: IntArray, values: FloatArray) -> None:
@@ -68,6 +76,9 @@ class Recorder:
 
     def add_motion(self, stamps: Any, position: Any, velocity: Any, effort: Any) -> None:
         self.motion += zip(stamps.tolist(), position.tolist(), velocity.tolist(), effort.tolist(), strict=True)
+
+    def add_torque(self, stamps: IntArray, torque: FloatArray) -> None:
+        self.torque += zip(stamps.tolist(), torque.tolist(), strict=True)
 
     def reject(self, reason: str) -> None:
         self.rejected.append(reason)
@@ -151,3 +162,13 @@ def test_an_imus_tangential_axis_becomes_angular_by_its_radius(axis: str, expect
 def test_an_imu_without_a_radius_is_refused() -> None:
     with pytest.raises(ParameterError, match="distance of the IMU"):
         inputs(input__source="imu", input__sensor_radius=0.0)
+
+
+@pytest.mark.parametrize(("axis", "expected"), [("x", 1.0), ("-y", -2.0), ("z", 3.0)])
+def test_a_wrenchs_torque_is_taken_along_the_joints_axis(axis: str, expected: float) -> None:
+    feed, sink = inputs(load__source="wrench", load__axis=axis)
+    whole = wrench(2, (1.0, 2.0, 3.0))
+    feed.add(Quantity.TORQUE, [wrench(1, (1.0, 2.0, 3.0)), whole[:-1], whole])
+    assert sink.torque == [(1, expected), (2, expected)]
+    assert len(sink.rejected) == 1
+    assert "cut off" in sink.rejected[0]

@@ -40,6 +40,12 @@ def accel(head: tuple[int, int, str], linear: Any, angular: Any, *, little_endia
     return raw(message, "geometry_msgs/msg/AccelStamped", little_endian=little_endian)
 
 
+def wrench(head: tuple[int, int, str], force: Any, torque: Any, *, little_endian: bool = True) -> bytes:
+    body = T["geometry_msgs/msg/Wrench"](vector(force), vector(torque))
+    message = T["geometry_msgs/msg/WrenchStamped"](header(*head), body)
+    return raw(message, "geometry_msgs/msg/WrenchStamped", little_endian=little_endian)
+
+
 def imu(head: tuple[int, int, str], linear: Any, angular: Any, *, little_endian: bool = True) -> bytes:
     covariance = np.arange(9.0)
     message = T["sensor_msgs/msg/Imu"](
@@ -75,7 +81,9 @@ def stamp(head: tuple[int, int, str]) -> int:
     return head[0] * 1_000_000_000 + head[1]
 
 
-@pytest.mark.parametrize(("write", "read"), [(accel, cdr.decode_accel_stamped), (imu, cdr.decode_imu)])
+@pytest.mark.parametrize(
+    ("write", "read"), [(accel, cdr.decode_vectors), (wrench, cdr.decode_vectors), (imu, cdr.decode_imu)]
+)
 @settings(max_examples=60)
 @given(rows=st.lists(st.tuples(headers, triples, triples, st.booleans()), max_size=8))
 def test_vectors_keep_their_order_for_mixed_frames_and_byte_orders(write: Any, read: Any, rows: list[Any]) -> None:
@@ -143,7 +151,8 @@ def test_multi_arrays_come_back_with_their_layout(rows: list[Any]) -> None:
 def test_a_truncated_message_is_a_fault_and_spoils_no_other() -> None:
     head = (5, 6, "sensor")
     writers: list[tuple[bytes, Any]] = [
-        (accel(head, (1, 2, 3), (4, 5, 6)), cdr.decode_accel_stamped),
+        (accel(head, (1, 2, 3), (4, 5, 6)), cdr.decode_vectors),
+        (wrench(head, (1, 2, 3), (4, 5, 6)), cdr.decode_vectors),
         (imu(head, (1, 2, 3), (4, 5, 6)), cdr.decode_imu),
     ]
     for whole, decode in writers:
@@ -164,7 +173,7 @@ def test_a_truncated_message_is_a_fault_and_spoils_no_other() -> None:
 @given(noise=st.binary(max_size=120))
 def test_noise_is_never_more_than_a_fault(noise: bytes) -> None:
     for message in (noise, b"\0\1\0\0" + noise):
-        for decode in (cdr.decode_accel_stamped, cdr.decode_imu, cdr.decode_joint_states, cdr.decode_multi_arrays):
+        for decode in (cdr.decode_vectors, cdr.decode_imu, cdr.decode_joint_states, cdr.decode_multi_arrays):
             decode([message])
 
 
@@ -178,24 +187,28 @@ def test_arrays_of_another_length_than_the_names_are_a_fault() -> None:
 
 
 def test_no_messages_give_empty_arrays() -> None:
-    assert cdr.decode_accel_stamped([]).stamps.shape == (0,)
-    assert cdr.decode_accel_stamped([]).linear.shape == (0, 3)
+    assert cdr.decode_vectors([]).stamps.shape == (0,)
+    assert cdr.decode_vectors([]).linear.shape == (0, 3)
     assert cdr.decode_joint_states([]) == ([], [])
     assert cdr.decode_multi_arrays([]) == ([], [])
 
 
 @pytest.mark.ros
 def test_messages_of_the_middleware_are_read() -> None:
-    from geometry_msgs.msg import AccelStamped
+    from geometry_msgs.msg import AccelStamped, WrenchStamped
     from rclpy.serialization import serialize_message
     from sensor_msgs.msg import JointState
 
     message = AccelStamped()
     message.header.stamp.sec, message.header.stamp.nanosec, message.header.frame_id = 7, 8, "rig"
     message.accel.angular.z, message.accel.linear.y = -2.5, 0.5
-    samples = cdr.decode_accel_stamped([serialize_message(message)])
+    samples = cdr.decode_vectors([serialize_message(message)])
     assert samples.faults == ()
     assert (samples.stamps[0], samples.angular[0, 2], samples.linear[0, 1]) == (7_000_000_008, -2.5, 0.5)
+    load = WrenchStamped(header=message.header)
+    load.wrench.torque.z, load.wrench.force.y = -3.5, 1.5
+    samples = cdr.decode_vectors([serialize_message(load)])
+    assert (samples.stamps[0], samples.angular[0, 2], samples.linear[0, 1]) == (7_000_000_008, -3.5, 1.5)
 
     state = JointState(name=["a", "bc"], velocity=[1.0, 2.0])
     groups, faults = cdr.decode_joint_states([serialize_message(state)])

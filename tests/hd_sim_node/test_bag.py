@@ -118,7 +118,7 @@ def test_the_cores_bulk_decoder_reads_it(tmp_path):
     write_bag(rig(), tmp_path / "bag", start=START)
     with AnyReader([tmp_path / "bag"]) as reader:
         raw = [data for connection, _, data in reader.messages() if connection.topic == "/torsional_acceleration"]
-    decoded = cdr.decode_accel_stamped(raw)
+    decoded = cdr.decode_vectors(raw)
     assert decoded.faults == ()
     values = np.concatenate([s.samples[s.dispatch[contract.TORSIONAL_ACCELERATION].row] for s in Simulation(rig())])
     np.testing.assert_array_equal(decoded.angular[:, 2], values)

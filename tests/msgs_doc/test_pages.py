@@ -10,6 +10,7 @@ from hd_monitor.diagnosis.status import status_of
 from hd_monitor.diagnosis.verdict import Component, FaultCode
 from hd_monitor.monitor import Monitor
 from hd_monitor.settings import JointSettings, set_aside_foreign, split_joints
+from hd_monitor.sources import INPUT_SOURCES, JOINT_STATES, LOAD_SOURCES
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = ROOT / "msgs_doc"
@@ -44,21 +45,24 @@ def test_every_component_is_documented(component: Component) -> None:
     assert f"`{component.value}`" in DIAGNOSTICS
 
 
-@pytest.mark.parametrize(
-    "topic",
-    [
-        contract.TORSIONAL_ACCELERATION,
-        contract.TORSIONAL_ACCELERATION_BLOCK,
-        contract.IMU,
-        contract.JOINT_STATES,
-        contract.ZOOM_SPECTRUM,
-        contract.RMS_CURVE,
-    ],
-)
+SOURCES = {f"input.source: {name}": source for name, source in INPUT_SOURCES.items()} | {
+    f"load.source: {name}": source for name, source in LOAD_SOURCES.items() if source is not None
+}
+
+
+@pytest.mark.parametrize("topic", {*(s.topic for s in SOURCES.values()), contract.ZOOM_SPECTRUM, contract.RMS_CURVE})
 def test_every_topic_has_a_section_with_an_example(topic: str) -> None:
     section = re.search(rf"^## {re.escape(topic)}\n(.*?)(?=^## |\Z)", TOPICS, re.MULTILINE | re.DOTALL)
     assert section is not None
     assert "```yaml" in section[1]
+
+
+@pytest.mark.parametrize("setting", SOURCES)
+def test_every_source_of_input_is_in_the_table(setting: str) -> None:
+    source = SOURCES[setting]
+    (row,) = (line for line in TOPICS.splitlines() if line.startswith(f"| [`{source.topic}`]"))
+    assert f"`{source.type}`" in row
+    assert f"`{setting}`" in row or (source is JOINT_STATES and f"`{setting.split()[1]}`" in row)
 
 
 def test_the_documented_layouts_are_the_contracts() -> None:

@@ -62,20 +62,23 @@ def even_stamps(times: FloatArray, rows: FloatArray) -> FloatArray:
     return even if as_evened < _CLEARLY_BETTER * as_stamped else times
 
 
-class MotionTrack:
-    """Joint states as a function of time, fed a stretch at a time.
+class Track:
+    """Stamped rows, fed a stretch at a time and kept as long as interpolation needs them.
 
-    The angle is unwrapped: a joint that reports -π after π is assumed to go on turning.
+    Parameters
+    ----------
+    columns : int
+        Values in a row.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, columns: int) -> None:
         self._times = np.empty(0)
-        self._rows = np.empty((0, 3))
+        self._rows = np.empty((0, columns))
 
     def extend(self, times: FloatArray, rows: FloatArray) -> BoolArray:
-        """Append messages: times [s], shape (N,), increasing, and rows (position, velocity, effort), shape (N, 3).
+        """Append rows, shape (N, columns), with their times [s], shape (N,), increasing.
 
-        Returns which ones were taken, shape (N,): finite in position, and later than the one before.
+        Returns which ones were taken, shape (N,): finite in the first column, and later than the one before.
         """
         good = np.isfinite(rows[:, 0])
         if self._times.size:
@@ -83,26 +86,58 @@ class MotionTrack:
         good[1:] &= times[1:] > times[:-1]
         if not good.all():
             times, rows = times[good], rows[good]
-        if not times.size:
-            return good
-        self._times = np.concatenate([self._times, times])
-        self._rows = np.concatenate([self._rows, rows])
-        angle = self._rows[:, 0]
-        steps = angle[1:] - angle[:-1]
-        if steps.size and (steps.max() > math.pi or steps.min() < -math.pi):
-            self._rows[:, 0] = np.unwrap(angle)
+        if times.size:
+            self._times = np.concatenate([self._times, times])
+            self._rows = np.concatenate([self._rows, rows])
         return good
 
     def forget(self, time: float) -> None:
-        """Drop what interpolation from `time` [s] on does not need, and the messages from then on: they come again."""
+        """Drop what interpolation from `time` [s] on does not need, and the rows from then on: they come again."""
         last = int(self._times.searchsorted(time))
         first = max(0, last - 2)
         self._times, self._rows = self._times[first:last], self._rows[first:last]
 
     def clear(self) -> None:
         """Forget everything."""
-        self._times = np.empty(0)
-        self._rows = np.empty((0, 3))
+        self._times, self._rows = self._times[:0], self._rows[:0]
+
+
+class TorqueTrack(Track):
+    """A measured torque as a function of time."""
+
+    def __init__(self) -> None:
+        super().__init__(1)
+
+    def at(self, times: FloatArray) -> FloatArray:
+        """Interpolate the torque [N·m] at rising `times` [s], shape (N,); NaN outside of the track and in its holes."""
+        known = self._times
+        if known.size < 2:
+            return np.full(times.size, np.nan)
+        torque = np.interp(times, known, self._rows[:, 0], left=np.nan, right=np.nan)
+        steps = np.diff(known)
+        longest = _largest_gap(float(np.median(steps)))
+        if steps.max() > longest:
+            torque[np.repeat(steps, _in_each(known, times)) > longest] = np.nan
+        return torque
+
+
+class MotionTrack(Track):
+    """Joint states as a function of time: position [rad], velocity [rad/s], effort [N·m].
+
+    The angle is unwrapped: a joint that reports -π after π is assumed to go on turning.
+    """
+
+    def __init__(self) -> None:
+        super().__init__(3)
+
+    def extend(self, times: FloatArray, rows: FloatArray) -> BoolArray:
+        """Append joint states; see :meth:`Track.extend`."""
+        good = super().extend(times, rows)
+        angle = self._rows[:, 0]
+        steps = angle[1:] - angle[:-1]
+        if steps.size and (steps.max() > math.pi or steps.min() < -math.pi):
+            self._rows[:, 0] = np.unwrap(angle)
+        return good
 
     def at(self, times: FloatArray) -> Motion:
         """Interpolate at rising `times` [s], shape (N,); NaN outside of the track and in its holes.

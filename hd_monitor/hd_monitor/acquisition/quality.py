@@ -33,6 +33,8 @@ class Quality:
         Joint states accepted.
     motion_faults : int
         Joint states dropped: not finite, without position, out of order or repeated.
+    torque_messages, torque_faults : int
+        Samples of a torque sensor accepted, and dropped: not finite, out of order or repeated.
     rejected : int
         Messages with a wrong layout.
     rate : float
@@ -53,6 +55,8 @@ class Quality:
     clock_jumps: int = 0
     motion_messages: int = 0
     motion_faults: int = 0
+    torque_messages: int = 0
+    torque_faults: int = 0
     rejected: int = 0
     rate: float = 0.0
     last_fault: str = ""

@@ -1,4 +1,4 @@
-"""Assembles vibration and motion of one period into records on an even grid, and counts their faults."""
+"""Assembles vibration, motion and torque of one period into records on an even grid, and counts their faults."""
 
 import itertools
 import math
@@ -7,10 +7,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import BoolArray, FloatArray, IntArray
 from ..settings import JointSettings
+from ..sources import Quantity
 from .clock import recover_clock
-from .motion import MotionTrack, even_stamps
+from .intake import Period
+from .motion import MotionTrack, TorqueTrack, Track, even_stamps
 from .quality import Quality
 from .record import JointSamples, Record
 from .screening import screen
@@ -33,11 +35,14 @@ class AssembledPeriod(NamedTuple):
         The joint states of the period as they came.
     vibration : ndarray, shape (N,)
         All screened vibration samples of the period, those without known motion included; NaN where spoilt.
+    usable : frozenset of Quantity
+        Inputs of which there was something of use.
     """
 
     records: tuple[Record, ...]
     joint_samples: JointSamples
     vibration: FloatArray
+    usable: frozenset[Quantity]
 
 
 @dataclass(slots=True)
@@ -59,9 +64,10 @@ class Recorder:
     def __init__(self, settings: JointSettings) -> None:
         self._max_gap = settings.analysis.max_gap
         self._full_scale = settings.input.clipping_limit
-        self._load_source = settings.load.source
-        self._load_torque = settings.load.torque
+        self._load = settings.load
+        self._has_sensor = Quantity.TORQUE in settings.sources
         self._track = MotionTrack()
+        self._torque_track = TorqueTrack()
         self._grid: _Grid | None = None
         self._joined = False
         self._counts: dict[str, Any] = {}
@@ -70,6 +76,7 @@ class Recorder:
     def cut(self) -> None:
         """Forget the motion and the grid: the next samples have another time base."""
         self._track.clear()
+        self._torque_track.clear()
         self._grid = None
         self._joined = False
 
@@ -93,40 +100,29 @@ class Recorder:
         """The newest complaint in words; empty if there is none."""
         return str(self._counts.get("last_fault", ""))
 
-    def assemble(
-        self, vibration: Samples, motion: Samples, next_motion: Samples, epoch: int, end: int
-    ) -> AssembledPeriod:
-        """Join the samples of one period.
-
-        Parameters
-        ----------
-        vibration : Samples
-            One column, θ'' [rad/s²].
-        motion : Samples
-            Three columns: position [rad], velocity [rad/s], effort [N·m].
-        next_motion : Samples
-            The first joint state after the period, or none: it closes the interpolation.
-        epoch, end : int
-            Zero of the core's times and end of the period [ns].
-        """
-        joint_samples = self._motion(motion, next_motion, epoch)
+    def assemble(self, period: Period) -> AssembledPeriod:
+        """Join the samples of one period."""
+        joint_samples = self._motion(period)
         angle = joint_samples.angle
         turning = angle.size > 0 and float(angle.max() - angle.min()) > _STANDING
-        records, values = self._vibration(vibration, epoch, turning)
-        self._track.forget((end - epoch) * _NS)
-        return AssembledPeriod(records, joint_samples, values)
-
-    def _motion(self, motion: Samples, following: Samples, epoch: int) -> JointSamples:
-        stamps, rows = motion
-        if stamps.size > 1 and not bool((stamps[1:] > stamps[:-1]).all()):
-            order = np.argsort(stamps, kind="stable")
-            stamps, rows = stamps[order], rows[order]
-        times = _seconds(stamps, epoch)
-        closing = _seconds(following.stamps, epoch)
-        taken = self._track.extend(
-            np.concatenate([even_stamps(times, rows), closing]), np.concatenate([rows, following.values])
+        torques = self._measured_torque(period)
+        records, values = self._vibration(period.samples[Quantity.VIBRATION], period.epoch, turning)
+        for track in (self._track, self._torque_track):
+            track.forget((period.end - period.epoch) * _NS)
+        some = {
+            Quantity.VIBRATION: np.isfinite(values).any(),
+            Quantity.MOTION: len(joint_samples) > 0,
+            Quantity.TORQUE: torques > 0,
+        }
+        return AssembledPeriod(
+            records, joint_samples, values, frozenset(quantity for quantity, usable in some.items() if usable)
         )
-        dropped = stamps.size - int(np.count_nonzero(taken[: stamps.size]))
+
+    def _motion(self, period: Period) -> JointSamples:
+        stamps, rows = _sorted(period.samples[Quantity.MOTION])
+        times = _seconds(stamps, period.epoch)
+        taken = self._extend(self._track, even_stamps(times, rows), rows, period, Quantity.MOTION)
+        dropped = stamps.size - int(np.count_nonzero(taken))
         self.count(motion_messages=stamps.size - dropped, motion_faults=dropped)
         if dropped:
             self.count(last_fault="joint states without a finite position or with repeated stamps were left out")
@@ -134,6 +130,25 @@ class Recorder:
             good[1:] &= stamps[1:] > stamps[:-1]
             times, rows = times[good], rows[good]
         return JointSamples(times=times, angle=rows[:, 0], speed=rows[:, 1], effort=rows[:, 2])
+
+    def _measured_torque(self, period: Period) -> int:
+        """Take in a torque sensor's samples, if there is one; return how many are of use."""
+        if not self._has_sensor:
+            return 0
+        stamps, rows = _sorted(period.samples[Quantity.TORQUE])
+        times = _seconds(stamps, period.epoch)
+        taken = int(np.count_nonzero(self._extend(self._torque_track, times, rows, period, Quantity.TORQUE)))
+        self.count(torque_messages=taken, torque_faults=stamps.size - taken)
+        if taken < stamps.size:
+            self.count(last_fault="torques that are not finite or with repeated stamps were left out")
+        return taken
+
+    @staticmethod
+    def _extend(track: Track, times: FloatArray, rows: FloatArray, period: Period, quantity: Quantity) -> BoolArray:
+        """Append to a track, with the first sample after the period; return which ones of the period were taken."""
+        following = period.following[quantity]
+        lent = _seconds(following.stamps, period.epoch)
+        return track.extend(np.concatenate([times, lent]), np.concatenate([rows, following.values]))[: times.size]
 
     def _vibration(self, samples: Samples, epoch: int, turning: bool) -> tuple[tuple[Record, ...], FloatArray]:
         if not samples.stamps.size:
@@ -187,6 +202,9 @@ class Recorder:
         times = np.asarray(start + period * np.arange(values.size), dtype=np.float64)
         angle, speed, torque = self._track.at(times)
         known = np.isfinite(angle)
+        if self._has_sensor:  # what lies in a hole of its signal has no torque that could be mixed with a measured one
+            torque = self._torque_track.at(times)
+            known &= np.isfinite(torque)
         if known.all():
             spans = [(0, values.size)]
         else:
@@ -217,17 +235,17 @@ class Recorder:
             self._joined = False
         return records
 
-    def _torque(self, effort: FloatArray) -> FloatArray:
-        """Pick the transmitted torque; drivers that measure no effort report zeros."""
-        measured = bool((np.abs(effort) > 0.0).any())  # false for NaN
-        if self._load_source in ("auto", "effort") and measured:
-            self.torque_source = "effort"
-            return effort
-        if self._load_source in ("auto", "parameter") and self._load_torque != 0.0:
-            self.torque_source = "parameter" if self._load_source == "parameter" else "assumed"
-            return np.full(effort.size, self._load_torque)
+    def _torque(self, measured: FloatArray) -> FloatArray:
+        """Pick the transmitted torque; drivers and sensors that measure none report zeros."""
+        source = self._load.source
+        if source not in ("parameter", "unknown") and bool((np.abs(measured) > 0.0).any()):  # false for NaN
+            self.torque_source = "effort" if source == "auto" else source
+            return measured
+        if source in ("auto", "parameter") and self._load.torque != 0.0:
+            self.torque_source = "parameter" if source == "parameter" else "assumed"
+            return np.full(measured.size, self._load.torque)
         self.torque_source = "unknown"
-        return np.full(effort.size, math.nan)
+        return np.full(measured.size, math.nan)
 
     def _hole(self, lost: int) -> None:
         self.count(gaps=1, lost=lost)
@@ -244,6 +262,15 @@ class Recorder:
         }
         worst = max(names, key=lambda name: names[name])
         self.count(last_fault=f"{names[worst]} vibration samples of the last period {worst} and were left out")
+
+
+def _sorted(samples: Samples) -> Samples:
+    """Bring samples into the order of their stamps."""
+    stamps, values = samples
+    if stamps.size < 2 or bool((stamps[1:] > stamps[:-1]).all()):
+        return samples
+    order = np.argsort(stamps, kind="stable")
+    return Samples(stamps[order], values[order])
 
 
 def _seconds(stamps: IntArray, epoch: int) -> FloatArray:

@@ -1,34 +1,140 @@
-"""Verdicts on input that does not come or cannot be used: no evidence, so no part is named."""
+"""What is said where input is lost, of no use or not enough: no part is named then."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
 
+from ..acquisition.presence import Loss
+from ..contract import NANOSECONDS
+from ..sources import Quantity
 from .verdict import Component, FaultCode, Level, Verdict
 
+Explain = Callable[[Quantity], str]
+"""Says of an input why nothing comes, as far as the ROS graph tells."""
 
-def nothing_received(missing: Sequence[str], timeout: float) -> Verdict:
-    """Say that nothing came for `timeout` [s]; `missing` names the inputs that never came at all."""
-    reason = f"No {' and no '.join(missing)} received yet" if missing else f"No new data for {timeout:g} s"
-    return _lost(f"{reason}: check that the publishers run and the topics match")
+_WORDS = {
+    Quantity.VIBRATION: "vibration signal",
+    Quantity.MOTION: "joint states",
+    Quantity.TORQUE: "torque signal",
+}
 
 
-def partly_lost(lost: Sequence[str], timeout: float) -> Verdict:
-    """Say that the inputs `lost` have not come for `timeout` [s] while others do."""
-    return _lost(
-        f"No {' and no '.join(lost)} for {timeout:g} s or more while other input goes on: "
-        "check the publisher, the topic's name and the stamps"
+def _error(reason: str, code: FaultCode) -> Verdict:
+    return Verdict(component=Component.UNDETERMINED, level=Level.ERROR, fault_code=code, reason=reason)
+
+
+def _listed(quantities: Iterable[Quantity]) -> str:
+    return " and no ".join(_WORDS[quantity] for quantity in quantities)
+
+
+def nothing_received(absent: Sequence[Quantity], timeout: float) -> Verdict:
+    """Say that nothing came for `timeout` [s]; `absent` are the inputs that never came at all."""
+    reason = f"No {_listed(absent)} received yet" if absent else f"No new data for {timeout:g} s"
+    return _error(f"{reason}: check that the publishers run and the topics match", FaultCode.INPUT_LOST)
+
+
+def lost(losses: Sequence[Loss], fault: str, timeout: float) -> Verdict:
+    """Say that inputs have not come, or not been of use because of `fault`, for `timeout` [s] while others have."""
+    if silent := [loss.quantity for loss in losses if loss.silent]:
+        return _error(
+            f"No {_listed(silent)} for {timeout:g} s or more while other input goes on: "
+            "check the publisher, the topic's name and the stamps",
+            FaultCode.INPUT_LOST,
+        )
+    words = _WORDS[losses[0].quantity]
+    return _error(
+        f"No usable {words} for {timeout:g} s or more, though messages come: {fault}; check the sensor",
+        FaultCode.INPUT_INVALID,
     )
 
 
-def unusable(fault: str, timeout: float) -> Verdict:
-    """Say that vibration comes but none of it could be used for `timeout` [s], because of `fault`."""
-    return Verdict(
-        component=Component.UNDETERMINED,
-        level=Level.ERROR,
-        fault_code=FaultCode.INPUT_INVALID,
-        reason=f"The vibration signal comes, but for {timeout:g} s or more no sample could be used: {fault}; "
-        "check the sensor",
+def lost_by_clock(losses: Sequence[Loss], stamps: Mapping[Quantity, int], fault: str, explain: Explain) -> Verdict:
+    """Say what a node knows of lost inputs: why, by the ROS graph, or by their newest stamps [ns]."""
+    reasons = []
+    for loss in losses:
+        words, stamp = _WORDS[loss.quantity], stamps.get(loss.quantity)
+        if loss.silent:
+            reasons.append(f"no {words} for {loss.since / NANOSECONDS:.0f} s: {explain(loss.quantity)}")
+        else:
+            still = "" if stamp is None else f"their stamps stand still at {stamp / NANOSECONDS:.3f} s"
+            reasons.append(f"messages with the {words} come but cannot be used: {fault or still}")
+    silent = any(loss.silent for loss in losses)
+    return _error(_sentence("; ".join(reasons)), FaultCode.INPUT_LOST if silent else FaultCode.INPUT_INVALID)
+
+
+def stamped_by_two_clocks(stamps: Mapping[Quantity, int]) -> Verdict:
+    """Say that inputs come whose newest stamps [ns] are far apart."""
+    first, last = min(stamps, key=stamps.__getitem__), max(stamps, key=stamps.__getitem__)
+    apart = (stamps[last] - stamps[first]) / NANOSECONDS
+    return _error(
+        _sentence(
+            f"{_WORDS[first]} and {_WORDS[last]} both come, but their stamps are {apart:.1f} s apart: stamp both from "
+            "one clock"
+        ),
+        FaultCode.INPUT_LOST,
     )
 
 
-def _lost(reason: str) -> Verdict:
-    return Verdict(component=Component.UNDETERMINED, level=Level.ERROR, fault_code=FaultCode.INPUT_LOST, reason=reason)
+def internal_error(error: Exception) -> Verdict:
+    """Say that the core failed."""
+    return _error(
+        f"Internal error, please report it: {type(error).__name__}: {error}; this joint's evidence was dropped and its "
+        "watch starts afresh",
+        FaultCode.INTERNAL_ERROR,
+    )
+
+
+WAITING = Verdict(
+    component=Component.UNDETERMINED,
+    level=Level.WARN,
+    fault_code=FaultCode.UNDETERMINED,
+    reason="Waiting for the first data: no verdict is possible yet",
+)
+NO_SIMULATED_TIME = replace(
+    WAITING, reason="use_sim_time is set, but no simulated time has come yet: does anything publish /clock?"
+)
+
+
+def not_enough(
+    absent: Sequence[Quantity], *, fault: str, records: bool, usable: bool, turning: bool, speed: float, rate: float
+) -> str:
+    """Say why there is no evidence yet.
+
+    Parameters
+    ----------
+    absent : sequence of Quantity
+        Inputs that have not come so far.
+    fault : str
+        The newest complaint.
+    records, usable : bool
+        Whether the last period had vibration with known motion, and any usable sample of it.
+    turning : bool
+        Whether it had enough motion.
+    speed : float
+        Of the wave generator [rpm].
+    rate : float
+        Sampling rate [Hz] if all lines lie above half of it at that speed; else 0.
+    """
+    if absent:
+        return f"No {_listed(absent)} so far"
+    if not records:
+        return "No vibration with known motion in the last period" + (f": {fault}" if fault else "")
+    if not usable:
+        return f"No usable vibration sample in the last period: {fault}"
+    if not turning:
+        return "The joint has not turned enough yet: the lines show in motion only"
+    if rate:
+        return (
+            f"At {speed:.0f} rpm all lines lie above half the sampling rate of {rate:.0f} Hz: check that positions "
+            "are in rad on the output side, or sample faster"
+        )
+    return "Not enough motion seen yet: let the joint turn on"
+
+
+def with_assumed_torque(verdict: Verdict, torque: float) -> Verdict:
+    """Add that a torque [N·m] was assumed, as none is measured."""
+    note = f"no effort was measured: the torque is taken to be {torque:g} N·m"
+    return replace(verdict, reason=f"{verdict.reason}; {note}")
+
+
+def _sentence(text: str) -> str:
+    return text[:1].upper() + text[1:]

@@ -88,6 +88,8 @@ def status_of(assessment: "Assessment", joint: str, settings: JointSettings) -> 
         ("clock jumps", str(quality.clock_jumps)),
         ("joint states", str(quality.motion_messages)),
         ("bad joint states", str(quality.motion_faults)),
+        ("torque samples", str(quality.torque_messages)),
+        ("bad torque samples", str(quality.torque_faults)),
         ("rejected messages", str(quality.rejected)),
         ("last complaint", quality.last_fault or "none"),
         *assessment.extra,

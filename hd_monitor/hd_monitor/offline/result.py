@@ -96,6 +96,8 @@ class JointResult:
             return f"joint {self.plan.joint!r}: no usable joint states: {self._why(Quantity.MOTION)}"
         if Quantity.VIBRATION in self.plan.topics and not quality.samples:
             return f"joint {self.plan.joint!r}: no usable vibration samples: {self._why(Quantity.VIBRATION)}"
+        if Quantity.TORQUE in self.plan.topics and not quality.torque_messages:
+            return f"joint {self.plan.joint!r}: no usable torque samples: {self._why(Quantity.TORQUE)}"
         return ""
 
     def _why(self, quantity: Quantity) -> str:
@@ -107,8 +109,8 @@ class JointResult:
         if len(self.plan.topics) == 1:
             return f"the recording's {messages} message(s) on {topic} are too few"
         return (
-            f"those recorded on {topic} ({messages}) and those of the other input hardly overlap in time, by their "
-            "stamps; record both together for some seconds"
+            f"those recorded on {topic} ({messages}) and those of the other inputs hardly overlap in time, by their "
+            "stamps; record them together for some seconds"
         )
 
     def as_dict(self) -> dict[str, Any]:

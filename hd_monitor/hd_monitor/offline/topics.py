@@ -77,8 +77,8 @@ class TopicFinder:
         if self._namespace is not None:
             return self._exact(found, self._absolute(name), source)
         named = [topic.name for topic in found if _ends(topic.name, name)]
-        if f"/{name}" in named:
-            return f"/{name}"
+        if (plain := f"/{name.lstrip('/')}") in named:
+            return plain
         if not named and "/" not in name.removesuffix(source.topic):
             named = [topic.name for topic in found if self._speaks(source, topic)]
         if len(named) == 1:

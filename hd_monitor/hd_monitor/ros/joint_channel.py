@@ -7,9 +7,10 @@ from rclpy.qos import QoSProfile
 from std_msgs.msg import Float64MultiArray
 
 from .. import contract
+from ..diagnosis.absence import Explain
 from ..settings import JointSettings
 from ..sources import Quantity
-from .joint_watch import Explain, JointWatch
+from .joint_watch import JointWatch
 from .messages import rms_message, zoom_message
 from .queue import most_messages, queue_depth
 from .subscriptions import DrainedSubscription

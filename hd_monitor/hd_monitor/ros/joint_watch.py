@@ -1,63 +1,28 @@
 """One joint as the node sees it: its monitor, what it was last told, and what became of that. Knows no rclpy."""
 
 import traceback
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
-import numpy as np
-
+from ..acquisition.presence import Loss, Presence
 from ..adapters import Inputs
-from ..arrays import FloatArray, IntArray
 from ..assessment import Assessment
-from ..contract import NANOSECONDS, Block
+from ..contract import NANOSECONDS
+from ..diagnosis.absence import (
+    NO_SIMULATED_TIME,
+    WAITING,
+    Explain,
+    internal_error,
+    lost_by_clock,
+    stamped_by_two_clocks,
+)
 from ..diagnosis.status import Status, status_of
-from ..diagnosis.verdict import Component, FaultCode, Level, Verdict
+from ..diagnosis.verdict import FaultCode, Verdict
 from ..errors import HdMonitorError
 from ..monitor import Monitor
 from ..orders.zoom import ZoomSpectrum
 from ..settings import JointSettings
 from ..sources import Quantity
-
-Explain = Callable[[Quantity], str]
-"""Says of an input why nothing comes, as far as the ROS graph tells."""
-
-
-@dataclass(slots=True)
-class _Heard:
-    """When an input was last heard [ns, the node's clock], and its newest stamp [ns]."""
-
-    arrived: int
-    useful: int
-    stamp: int | None = None
-
-
-class _Witness:
-    """Stands before a monitor and notes the newest stamp of each input that passes."""
-
-    def __init__(self, monitor: Monitor) -> None:
-        self._monitor = monitor
-        self.stamps: dict[Quantity, int] = {}
-
-    def add_vibration(self, stamps: IntArray, values: FloatArray) -> None:
-        """Pass on and note."""
-        self.stamps[Quantity.VIBRATION] = int(stamps[-1])
-        self._monitor.add_vibration(stamps, values)
-
-    def add_block(self, block: Block) -> None:
-        """Pass on and note."""
-        self.stamps[Quantity.VIBRATION] = block.stamp
-        self._monitor.add_block(block)
-
-    def add_motion(self, stamps: IntArray, position: FloatArray, velocity: FloatArray, effort: FloatArray) -> None:
-        """Pass on and note those that say where the joint is."""
-        known = np.flatnonzero(np.isfinite(position))
-        if known.size:
-            self.stamps[Quantity.MOTION] = int(stamps[known[-1]])
-        self._monitor.add_motion(stamps, position, velocity, effort)
-
-    def reject(self, reason: str) -> None:
-        """Pass on."""
-        self._monitor.reject(reason)
 
 
 class JointWatch:
@@ -85,24 +50,21 @@ class JointWatch:
         self.settings = settings
         self.errors = 0
         self.last_error = ""
-        self._timeout = round(settings.input.timeout * NANOSECONDS)
+        self._presence = Presence(settings.sources, round(settings.input.timeout * NANOSECONDS))
         self._assessed = False
         self._start()
         self.wake(now)
-        self.present = self._other(
-            now, Level.WARN, FaultCode.UNDETERMINED, "Waiting for the first data: no verdict is possible yet"
-        )
+        self.present = self._other(now, WAITING)
         self._told = self._key()
         self._transitions: list[Status] = []
 
     def _start(self) -> None:
         self._monitor = Monitor(self.joint, self.settings)
-        self._witness = _Witness(self._monitor)
-        self._inputs = Inputs(self.joint, self.settings, self._witness)
+        self._inputs = Inputs(self.joint, self.settings, self._monitor)
 
     def wake(self, now: int) -> None:
         """Count silence from `now` [ns] on: the node has only just begun to listen."""
-        self._heard = {name: _Heard(now, now, self._witness.stamps.get(name)) for name in self.settings.sources}
+        self._presence.start(now or None)
 
     # What the node calls --------------------------------------------------------------------------------------------
 
@@ -118,10 +80,13 @@ class JointWatch:
             Asked where an input is lost.
         """
         try:
+            stamps = self._monitor.newest_stamps
             for quantity, new in messages.items():
                 if new:
+                    before = stamps.get(quantity)
                     self._inputs.add(quantity, new)
-                    self._note(quantity, now)
+                    if now:  # else a simulated clock has not begun
+                        self._presence.note(quantity, now, now if stamps.get(quantity) != before else None)
             assessments = self._monitor.advance()
             for assessment in assessments:
                 self._show(self._explained(assessment, now, explain))
@@ -141,14 +106,9 @@ class JointWatch:
             return
         try:
             if not now:
-                reason = "use_sim_time is set, but no simulated time has come yet: does anything publish /clock?"
-                self._show(self._other(now, Level.WARN, FaultCode.UNDETERMINED, reason))
-                return
-            useless = self._useless(now)
-            if not useless:
-                return
-            reasons = [self._complain(name, now, explain) for name in useless]
-            self._show(self._other(now, Level.ERROR, self._code(useless, now), _sentence("; ".join(reasons))))
+                self._show(self._other(now, NO_SIMULATED_TIME))
+            elif losses := self._presence.losses(now):
+                self._show(self._other(now, self._describe(losses, explain)))
         except Exception as error:
             self._fail(error, now)
 
@@ -186,55 +146,23 @@ class JointWatch:
 
     # ----------------------------------------------------------------------------------------------------------------
 
-    def _note(self, name: Quantity, now: int) -> None:
-        heard = self._heard[name]
-        heard.arrived = now
-        stamp = self._witness.stamps.get(name)
-        if stamp != heard.stamp:
-            heard.stamp, heard.useful = stamp, now
-
-    def _useless(self, now: int) -> list[Quantity]:
-        for heard in self._heard.values():
-            if heard.arrived > now or not heard.arrived:  # the clock was set back, or has only just begun
-                heard.arrived = heard.useful = now
-        return [name for name, heard in self._heard.items() if now - heard.useful >= self._timeout]
-
-    def _complain(self, name: Quantity, now: int, explain: Explain) -> str:
-        heard = self._heard[name]
-        if now - heard.arrived >= self._timeout:
-            return f"no {_WORDS[name]} for {(now - heard.arrived) / NANOSECONDS:.0f} s: {explain(name)}"
-        fault = self._monitor.silence(now).quality.last_fault
-        if heard.stamp is not None and not fault:
-            fault = f"their stamps stand still at {heard.stamp / NANOSECONDS:.3f} s"
-        return f"messages with the {_WORDS[name]} come but cannot be used: {fault}"
+    def _describe(self, losses: Sequence[Loss], explain: Explain) -> Verdict:
+        fault = self._monitor.silence(0).quality.last_fault
+        return lost_by_clock(losses, self._monitor.newest_stamps, fault, explain)
 
     def _explained(self, assessment: Assessment, now: int, explain: Explain) -> Assessment:
         """Add to a lost input what the monitor, which sees stamps only, cannot know."""
         if assessment.verdict.fault_code is not FaultCode.INPUT_LOST:
             return assessment
-        useless = self._useless(now)
-        reasons = [self._complain(name, now, explain) for name in useless]
-        code = self._code(useless, now) if useless else FaultCode.INPUT_LOST
-        stamps = [heard.stamp for heard in self._heard.values()]
-        if not reasons and len(stamps) == 2 and stamps[0] is not None and stamps[1] is not None:
-            apart = abs(stamps[0] - stamps[1])
-            if apart >= self._timeout:
-                reasons = [
-                    f"vibration and joint states both come, but their stamps are {apart / NANOSECONDS:.1f} s apart: "
-                    "stamp both from one clock"
-                ]
-        if not reasons:
-            return assessment
-        verdict = replace(assessment.verdict, fault_code=code, reason=_sentence("; ".join(reasons)))
-        return replace(assessment, verdict=verdict)
+        stamps = self._monitor.newest_stamps
+        if losses := self._presence.losses(now):
+            return replace(assessment, verdict=self._describe(losses, explain))
+        if len(stamps) > 1 and max(stamps.values()) - min(stamps.values()) >= self._presence.timeout * NANOSECONDS:
+            return replace(assessment, verdict=stamped_by_two_clocks(stamps))
+        return assessment
 
-    def _code(self, useless: list[Quantity], now: int) -> FaultCode:
-        silent = any(now - self._heard[name].arrived >= self._timeout for name in useless)
-        return FaultCode.INPUT_LOST if silent else FaultCode.INPUT_INVALID
-
-    def _other(self, now: int, level: Level, code: FaultCode, reason: str) -> Assessment:
+    def _other(self, now: int, verdict: Verdict) -> Assessment:
         """Make an assessment that the monitor knows nothing of, with all that it knows."""
-        verdict = Verdict(component=Component.UNDETERMINED, level=level, fault_code=code, reason=reason)
         return replace(self._monitor.silence(now), verdict=verdict)
 
     def _show(self, assessment: Assessment) -> None:
@@ -254,19 +182,4 @@ class JointWatch:
         self.errors += 1
         self.last_error = traceback.format_exc()
         self._start()
-        self._show(
-            self._other(
-                now,
-                Level.ERROR,
-                FaultCode.INTERNAL_ERROR,
-                f"Internal error, please report it: {type(error).__name__}: {error}; this joint's evidence was "
-                "dropped and its watch starts afresh",
-            )
-        )
-
-
-_WORDS = {Quantity.VIBRATION: "vibration signal", Quantity.MOTION: "joint states"}
-
-
-def _sentence(text: str) -> str:
-    return text[:1].upper() + text[1:]
+        self._show(self._other(now, internal_error(error)))

@@ -1,8 +1,11 @@
 """The groups of a joint's parameters as types; the table holds their defaults, units, ranges and descriptions."""
 
+import re
 from dataclasses import dataclass
 
 from ..errors import ParameterError
+
+_TOPIC = re.compile(r"/?[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -22,10 +25,26 @@ class InputSettings:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LoadSettings:
-    """The parameters ``load.*``."""
+    """The parameters ``load.*``.
+
+    Raises
+    ------
+    ParameterError
+        If the topic is not a name that ROS allows.
+    """
 
     source: str
     torque: float
+    topic: str
+    axis: str
+
+    def __post_init__(self) -> None:
+        """Refuse a topic that cannot be subscribed to."""
+        if self.topic and not _TOPIC.fullmatch(self.topic):
+            raise ParameterError(
+                f"load.topic = {self.topic!r} is not a topic's name; it has words of letters, digits and underscores "
+                "with single slashes between, as in ft_sensor/wrench"
+            )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -1,14 +1,14 @@
 """The settings of one joint's monitor, checked against the table and against each other."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Self
 
 from ..errors import ParameterError
 from ..model.parameters import Dynamics
 from ..parameter import Value, check_all, fill_group
 from ..reducer import Reducer
-from ..sources import INPUT_SOURCES, JOINT_STATES, Quantity, Source
+from ..sources import INPUT_SOURCES, JOINT_STATES, LOAD_SOURCES, Quantity, Source
 from .groups import AnalysisSettings, DiagnosisSettings, InputSettings, LoadSettings
 from .table import PARAMETERS
 
@@ -89,4 +89,8 @@ class JointSettings:
     @property
     def sources(self) -> dict[Quantity, Source]:
         """The inputs that the joint needs."""
-        return {source.quantity: source for source in (JOINT_STATES, self.vibration)}
+        needed = [JOINT_STATES, self.vibration]
+        torque = LOAD_SOURCES[self.load.source]
+        if torque is not None and not self.sensorless:
+            needed.append(replace(torque, topic=self.load.topic or torque.topic))
+        return {source.quantity: source for source in needed}

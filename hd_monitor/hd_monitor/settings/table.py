@@ -2,7 +2,9 @@
 
 from ..parameter import Parameter
 from ..reducer import Mount
-from ..sources import INPUT_SOURCES
+from ..sources import INPUT_SOURCES, LOAD_SOURCES
+
+AXES = ("x", "y", "z", "-x", "-y", "-z")
 
 PARAMETERS: tuple[Parameter, ...] = (
     Parameter(
@@ -55,7 +57,7 @@ PARAMETERS: tuple[Parameter, ...] = (
     Parameter(
         name="input.axis",
         default="y",
-        choices=("x", "y", "z", "-x", "-y", "-z"),
+        choices=AXES,
         description="axis of an IMU's linear acceleration that points along the motion (tangential)",
     ),
     Parameter(
@@ -114,8 +116,9 @@ PARAMETERS: tuple[Parameter, ...] = (
     Parameter(
         name="load.source",
         default="auto",
-        choices=("auto", "effort", "parameter", "unknown"),
-        description="where the transmitted torque comes from; auto: effort if joint_states has it, else load.torque",
+        choices=tuple(LOAD_SOURCES),
+        description="where the transmitted torque comes from; auto: effort if joint_states has it, else load.torque; "
+        "wrench: a force-torque sensor",
     ),
     Parameter(
         name="load.torque",
@@ -124,6 +127,18 @@ PARAMETERS: tuple[Parameter, ...] = (
         low=-1e6,
         high=1e6,
         description="mean torque on the output where no effort is measured; 0: unknown, indexes are then relative",
+    ),
+    Parameter(
+        name="load.topic",
+        default="",
+        description="topic of the torque's sensor with load.source: wrench; empty: wrench, below the joint's name with "
+        "several joints",
+    ),
+    Parameter(
+        name="load.axis",
+        default="z",
+        choices=AXES,
+        description="axis of the wrench that points along the joint's axis, with the sign that an effort would have",
     ),
     Parameter(
         name="analysis.harmonics", default=3, low=1, high=8, description="line pairs identified, k = 1 … harmonics"

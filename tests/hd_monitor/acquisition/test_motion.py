@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hd_monitor.acquisition.motion import MotionTrack, even_stamps
+from hd_monitor.acquisition.motion import MotionTrack, TorqueTrack, even_stamps
 
 
 def fed(times: np.ndarray, rows: np.ndarray, chunk: int = 10_000) -> MotionTrack:
@@ -84,3 +84,21 @@ def test_single_missing_efforts_are_bridged() -> None:
     effort[::3] = np.nan
     torque = fed(times, np.column_stack([times, np.ones_like(times), effort])).at(times[2:-3]).torque
     assert np.allclose(torque, 5.0 + times[2:-3])
+
+
+@pytest.mark.parametrize("chunk", [1, 7, 1000])
+def test_a_torque_is_linear_between_its_samples_and_unknown_in_holes(chunk: int) -> None:
+    times = np.r_[0.0:1.0:0.01, 2.0:3.0:0.01]
+    torque = 5.0 + 2.0 * times
+    torque[[10, 50]] = np.nan  # single missing values are bridged
+    track = TorqueTrack()
+    for first in range(0, times.size, chunk):
+        track.extend(times[first : first + chunk], torque[first : first + chunk, None])
+    asked = np.array([-0.1, 0.0, 0.105, 0.5, 0.985, 1.5, 2.0, 2.5, 3.5])
+    expected = 5.0 + 2.0 * asked
+    expected[[0, 5, 8]] = np.nan
+    np.testing.assert_allclose(track.at(asked), expected, rtol=1e-12)
+    track.forget(2.505)
+    np.testing.assert_allclose(track.at(np.array([2.495])), [5.0 + 2.0 * 2.495])
+    track.clear()
+    assert np.isnan(track.at(asked)).all()

@@ -52,6 +52,12 @@ def accel(stamp: int, angular: float) -> Any:
     return TYPES["geometry_msgs/msg/AccelStamped"](header(stamp), body)
 
 
+def wrench(stamp: int, torque: float) -> Any:
+    vector = TYPES["geometry_msgs/msg/Vector3"]
+    body = TYPES["geometry_msgs/msg/Wrench"](vector(0.0, 0.0, 5.0), vector(torque, 0.3, -0.2))
+    return TYPES["geometry_msgs/msg/WrenchStamped"](header(stamp), body)
+
+
 def imu(stamp: int, tangential: float) -> Any:
     vector, nine = TYPES["geometry_msgs/msg/Vector3"], np.zeros(9)
     orientation = TYPES["geometry_msgs/msg/Quaternion"](0.0, 0.0, 0.0, 1.0)

@@ -119,3 +119,20 @@ def test_a_joint_that_is_not_recorded_leaves_a_complaint_with_the_names(recordin
     last = run(recording, joints=["elbow"])[-1].assessment
     assert last.quality.motion_messages == 0
     assert "'elbow' is not in joint_states, which carries joint" in last.quality.last_fault
+
+
+def test_a_force_torque_sensor_takes_the_place_of_efforts(tmp_path: Path) -> None:
+    rig = rec.simulated(**FAST, defect="flexspline", joint_states__effort="none")
+    stamps = range(rec.START, rec.START + 12 * 10**9, 13_000_000)
+    torques = [rec.Event(stamp, "/ft_sensor/wrench", rec.wrench(stamp, -10.0)) for stamp in stamps]
+    parameters = {"load.source": "wrench", "load.topic": "ft_sensor/wrench", "load.axis": "-x", "load.torque": 30.0}
+    said = run(rec.write(tmp_path / "bag", rig + torques), parameters=parameters)
+    last = said[-1].assessment
+    assert last.verdict.component is Component.FLEXSPLINE
+    assert last.torque_source == "wrench"
+    assert last.identification is not None
+    assert last.identification.index.flexspline == pytest.approx(0.103, rel=0.05)
+    delayed = [event._replace(time=event.time + 300_000_000) for event in torques]
+    assert statuses(run(rec.write(tmp_path / "delayed", rig + delayed), parameters=parameters)) == statuses(said)
+    with pytest.raises(BagError, match=r"no ft_sensor/wrench \(geometry_msgs/WrenchStamped\) was recorded"):
+        run(rec.write(tmp_path / "without", rig), parameters=parameters)

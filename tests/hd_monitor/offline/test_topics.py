@@ -111,3 +111,21 @@ def test_what_is_missing_is_said_with_what_is_there(topics: dict[str, str], empt
     with pytest.raises(BagError, match=words) as caught:
         finder(topics, empty=empty).joint_topics(sources_of("joint_effort"))
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("given", "joint", "topics", "expected"),
+    [
+        ("", None, ["/arm/wrench", "/other"], "/arm/wrench"),
+        ("", None, ["/some_sensor"], "/some_sensor"),
+        ("", "wrist", ["/elbow/wrench", "/wrist/wrench"], "/wrist/wrench"),
+        ("/ft/wrench", "wrist", ["/wrist/ft/wrench", "/ft/wrench"], "/ft/wrench"),
+    ],
+)
+def test_a_wrench_is_found_by_the_name_that_the_parameters_give(
+    given: str, joint: str | None, topics: list[str], expected: str
+) -> None:
+    settings = JointSettings.from_mapping({"load.source": "wrench", "load.topic": given})
+    torque = {Quantity.TORQUE: settings.sources[Quantity.TORQUE]}
+    find = finder(dict.fromkeys(topics, "geometry_msgs/msg/WrenchStamped"))
+    assert find.joint_topics(torque, joint) == {Quantity.TORQUE: expected}

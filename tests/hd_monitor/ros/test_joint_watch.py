@@ -140,9 +140,16 @@ def test_new_limits_keep_the_evidence() -> None:
     assert float(watch.status().value("samples")) > float(samples)
 
 
-@pytest.mark.parametrize(("source", "inputs"), [("joint_effort", {Quantity.MOTION}), ("block", set(Quantity))])
-def test_only_inputs_that_are_used_are_missed(source: str, inputs: set[Quantity]) -> None:
-    watch = watch_of(input__source=source)
+@pytest.mark.parametrize(
+    ("source", "load", "inputs"),
+    [
+        ("joint_effort", "wrench", {Quantity.MOTION}),
+        ("block", "auto", {Quantity.VIBRATION, Quantity.MOTION}),
+        ("block", "wrench", {Quantity.VIBRATION, Quantity.MOTION, Quantity.TORQUE}),
+    ],
+)
+def test_only_inputs_that_are_used_are_missed(source: str, load: str, inputs: set[Quantity]) -> None:
+    watch = watch_of(input__source=source, load__source=load)
     asked: list[Quantity] = []
 
     def note(name: Quantity) -> str:

@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from hd_monitor.cdr import decode_accel_stamped
+from hd_monitor.cdr import decode_vectors
 
 pytestmark = pytest.mark.ros
 
@@ -40,7 +40,7 @@ def test_messages_are_taken_in_their_order(peer: Any) -> None:
         return len(received) >= 700
 
     peer.until(complete, "700 messages")
-    samples = decode_accel_stamped(received)
+    samples = decode_vectors(received)
     assert samples.stamps.tolist() == list(range(700))
     assert samples.angular[:, 2].tolist() == [float(number) for number in range(700)]
     assert subscription.drain() == []
@@ -56,10 +56,10 @@ def test_a_queue_that_runs_over_keeps_the_newest(peer: Any) -> None:
 
     def complete() -> bool:
         received.extend(subscription.drain())
-        return bool(received) and decode_accel_stamped(received[-1:]).stamps[0] == 99
+        return bool(received) and decode_vectors(received[-1:]).stamps[0] == 99
 
     peer.until(complete, "the newest message")
-    stamps = decode_accel_stamped(received).stamps.tolist()
+    stamps = decode_vectors(received).stamps.tolist()
     assert stamps == sorted(set(stamps))
 
 

@@ -46,7 +46,16 @@ def test_reducer_and_dynamics_are_built_from_their_groups():
 def test_sensorless_sources_are_those_of_joint_states(source):
     joint = settings(input__source=source)
     assert joint.sensorless == source.startswith("joint_")
-    assert set(joint.sources) == ({Quantity.MOTION} if joint.sensorless else set(Quantity))
+    assert set(joint.sources) == {Quantity.MOTION} | (set() if joint.sensorless else {Quantity.VIBRATION})
+
+
+def test_a_torque_sensor_is_a_source_of_its_own():
+    torque = settings(load__source="wrench").sources[Quantity.TORQUE]
+    assert (torque.topic, torque.type) == ("wrench", "geometry_msgs/WrenchStamped")
+    assert torque.name_below("elbow") == "elbow/wrench"
+    assert settings(load__source="wrench", load__topic="ft/w").sources[Quantity.TORQUE].name_below("a") == "a/ft/w"
+    assert settings(load__source="wrench", load__topic="/ft/w").sources[Quantity.TORQUE].name_below("a") == "/ft/w"
+    assert Quantity.TORQUE not in settings(load__source="wrench", input__source="joint_effort").sources
 
 
 def test_every_parameter_is_a_typed_field_of_its_group():
@@ -73,6 +82,10 @@ def test_every_parameter_is_a_typed_field_of_its_group():
         ({"diagnosis.confirm_count": 4}, ParameterError, "never be reached"),
         ({"analysis.harmonics": 2.0}, ParameterError, "wrong type"),
         ({"diagnosis.latch": 1}, ParameterError, "wrong type"),
+        ({"load.topic": "ft sensor"}, ParameterError, "not a topic's name"),
+        ({"load.topic": "ft//wrench"}, ParameterError, "not a topic's name"),
+        ({"load.axis": "w"}, ParameterError, "choose one of: x, y, z, -x, -y, -z"),
+        ({"input.source": "imu", "input.sensor_radius": 0.0}, ParameterError, "distance of the IMU"),
     ],
 )
 def test_what_is_wrong_is_refused_with_the_reason(changes, error, match):

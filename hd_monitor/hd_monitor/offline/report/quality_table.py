@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 from ...acquisition.quality import Quality
+from ...sources import Quantity
 from ..result import JointResult
 from .collector import Collector
 
@@ -25,6 +26,8 @@ def quality_rows(result: JointResult, collector: Collector) -> list[Row]:
     rows = [Row("joint states", f"{quality.motion_messages} at {rate:.1f} Hz", "messages with a position", False)]
     if not result.plan.settings.sensorless:
         rows.insert(0, Row("vibration samples", f"{quality.samples} at {quality.rate:.2f} Hz", "accepted", False))
+    if Quantity.TORQUE in result.plan.topics:
+        rows.append(Row("torque samples", str(quality.torque_messages), "of the torque sensor, accepted", False))
     rows += [Row(name, str(count), meaning, count > 0) for name, count, meaning in _faults(quality)]
     if quality.last_fault:
         rows.append(Row("last complaint", quality.last_fault, "in the monitor's words", True))
@@ -43,5 +46,6 @@ def _faults(quality: Quality) -> list[tuple[str, int, str]]:
         ("spikes", quality.spikes, "outliers, left out"),
         ("clock jumps", quality.clock_jumps, "stamps went back or far ahead"),
         ("bad joint states", quality.motion_faults, "no position, repeated or out of order"),
+        ("bad torque samples", quality.torque_faults, "not finite, repeated or out of order"),
         ("rejected messages", quality.rejected, "wrong layout or without the joint"),
     ]

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hd_monitor.acquisition.stream import LATENESS, StampedBuffer
-from hd_monitor.timeline import Timeline, Window
+from hd_monitor.acquisition.timeline import Timeline, Window
 
 SECOND = 1_000_000_000
 STEP = 10_000_000

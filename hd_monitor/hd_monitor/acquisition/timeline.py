@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from .acquisition.stream import StampedBuffer
+from .stream import StampedBuffer
 
 
 class Window(NamedTuple):

@@ -1,0 +1,78 @@
+"""Which inputs of a joint are lost: the one place that decides it, whatever the clock."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from ..sources import Quantity
+
+
+class Loss(NamedTuple):
+    """An input that is lost."""
+
+    quantity: Quantity
+    silent: bool
+    """Whether nothing comes; otherwise messages come, but none can be used."""
+    since: int
+    """How long nothing has come, or nothing of use [ns]."""
+
+
+@dataclass(slots=True)
+class _Heard:
+    """When an input was last heard, and last of use [ns]; None while the clock has not begun."""
+
+    came: int | None = None
+    useful: int | None = None
+
+
+class Presence:
+    """Decides which inputs are lost: those of which nothing, or nothing of use, came for a while.
+
+    The monitor asks it on the clock of the stamps, the node on its own.
+
+    Parameters
+    ----------
+    quantities : iterable of Quantity
+        The inputs that the joint needs.
+    timeout : int
+        Silence after which an input is lost [ns].
+    """
+
+    def __init__(self, quantities: Iterable[Quantity], timeout: int) -> None:
+        self._timeout = timeout
+        self._heard = {quantity: _Heard() for quantity in quantities}
+        self._absent = list(self._heard)
+
+    @property
+    def timeout(self) -> float:
+        """Silence after which an input is lost [s]."""
+        return self._timeout * 1e-9
+
+    @property
+    def absent(self) -> tuple[Quantity, ...]:
+        """Inputs of which nothing has come so far."""
+        return tuple(self._absent)
+
+    def start(self, now: int | None) -> None:
+        """Count silence from `now` [ns]; None: from the first look, as the clock has not begun."""
+        for heard in self._heard.values():
+            heard.came = heard.useful = now
+
+    def note(self, quantity: Quantity, came: int, useful: int | None = None) -> None:
+        """Note when an input came, and when it was of use [ns]; None: it was not."""
+        if quantity in self._absent:
+            self._absent.remove(quantity)
+        if (heard := self._heard.get(quantity)) is not None:
+            heard.came = came
+            heard.useful = heard.useful if useful is None else useful
+
+    def losses(self, now: int) -> list[Loss]:
+        """Return the inputs that are lost at `now` [ns]."""
+        found = []
+        for quantity, heard in self._heard.items():
+            if heard.came is None or heard.useful is None or heard.came > now:  # the clock has begun, or was set back
+                heard.came = heard.useful = now
+            if now - heard.useful >= self._timeout:
+                silent = now - heard.came >= self._timeout
+                found.append(Loss(quantity, silent, now - (heard.came if silent else heard.useful)))
+        return found

@@ -1,0 +1,97 @@
+"""What a joint's monitor has gathered: identification, RMS curve and the newest steady segment."""
+
+import math
+
+import numpy as np
+
+from .acquisition.record import Record
+from .acquisition.recorder import AssembledPeriod
+from .arrays import FloatArray
+from .identification.identifier import Identifier
+from .identification.result import Identification
+from .identification.sensorless.identifier import SensorlessIdentifier
+from .orders.rms_curve import RmsAccumulator, RmsCurve
+from .orders.steady import SteadySegment
+from .settings import JointSettings
+
+_SLOW_DEGREE = 5  # of the polynomial that takes gravity and rigid motion off a second of an IMU's signal
+
+
+class Evidence:
+    """Everything that one joint's periods have told.
+
+    Parameters
+    ----------
+    settings : JointSettings
+    identifier : Identifier or SensorlessIdentifier, optional
+        One that goes on with what it knows.
+    """
+
+    def __init__(self, settings: JointSettings, identifier: Identifier | SensorlessIdentifier | None = None) -> None:
+        self._rpm = settings.reducer.reduction * 60.0 / math.tau
+        self._radius = settings.input.sensor_radius
+        self._gravity = settings.vibration.gravity
+        self._rms = RmsAccumulator(settings.analysis.rms_bin_width)
+        self._steady = SteadySegment(settings.reducer, settings.analysis.minimum_speed)
+        self._identifier = identifier or (
+            SensorlessIdentifier(settings) if settings.sensorless else Identifier(settings)
+        )
+
+    def add(self, period: AssembledPeriod) -> None:
+        """Take in another period."""
+        if isinstance(self._identifier, SensorlessIdentifier):
+            if len(period.joint_samples):
+                self._identifier.add(period.joint_samples)
+            return
+        for record in period.records:
+            self._rms.add(record.speed * self._rpm, self._tangential(record.acceleration))
+            self._steady.add(record)
+            self._identifier.add(record)
+        if not period.records:
+            self._steady.interrupt()
+
+    @property
+    def identification(self) -> Identification | None:
+        """What has been identified; None as long as nothing could be."""
+        return self._identifier.estimate()
+
+    @property
+    def rms_curve(self) -> RmsCurve:
+        """RMS [m/s²] of the vibration against the wave generator's speed."""
+        return self._rms.curve()
+
+    @property
+    def steady_parts(self) -> tuple[Record, ...]:
+        """The newest segment at an almost constant speed, in pieces."""
+        return self._steady.parts()
+
+    def speed(self, period: AssembledPeriod) -> float:
+        """Mean magnitude of the wave-generator speed in a period [rpm]; NaN without motion."""
+        if period.records:
+            total = sum(len(record) for record in period.records)
+            return sum(float(np.abs(r.speed).sum()) for r in period.records) / total * self._rpm
+        joint = period.joint_samples
+        if len(joint) < 2:
+            return math.nan
+        travel = float(np.abs(np.diff(np.unwrap(joint.angle))).sum())
+        return travel / float(joint.times[-1] - joint.times[0]) * self._rpm
+
+    def level(self, period: AssembledPeriod) -> float:
+        """RMS of a period's vibration at the sensor's radius [m/s²]; NaN without any."""
+        values = self._tangential(period.vibration)
+        squares = values * values
+        power = float(squares.sum())
+        if math.isnan(power):
+            squares = squares[np.isfinite(squares)]
+            power = float(squares.sum())
+        return math.sqrt(power / squares.size) if squares.size else math.nan
+
+    def _tangential(self, acceleration: FloatArray) -> FloatArray:
+        """Vibration at the sensor's radius [m/s²]; gravity and the arm's own motion taken off an IMU's signal."""
+        values = self._radius * acceleration
+        known = np.isfinite(values)
+        if not self._gravity or int(known.sum()) < 2 * _SLOW_DEGREE:
+            return values
+        place = np.linspace(-1.0, 1.0, values.size)
+        slow = np.polynomial.Legendre.fit(place[known], values[known], _SLOW_DEGREE, domain=[-1.0, 1.0])
+        return np.asarray(values - slow(place))
