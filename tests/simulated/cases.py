@@ -14,6 +14,7 @@ from scipy.signal import lfilter
 
 from hd_monitor.acquisition.motion import MotionTrack
 from hd_monitor.acquisition.record import Record
+from hd_monitor.acquisition.screening import screen
 from hd_monitor.arrays import FloatArray
 from hd_monitor.diagnosis.verdict import Component
 from hd_monitor.model import (
@@ -287,6 +288,8 @@ def _measure(
     hit = rng.random(values.size) < case.spikes
     values[hit] += rng.choice([-1.0, 1.0], int(hit.sum())) * rng.uniform(20.0, 200.0, int(hit.sum())) * level
     values[rng.random(values.size) < case.lost] = np.nan
+    present = np.isfinite(values)
+    values[present] = screen(values[present]).values
     joint = np.arange(0.0, times[-1], 0.008)
     rows = np.column_stack(
         [

@@ -20,8 +20,6 @@ class Coverage:
         Limits of the output angle [rad].
     samples : int
         Samples of the sensor.
-    outliers : int
-        Of these, left out because they stuck out of their neighbours.
     time : float
         [s]
     way, squared : float
@@ -33,7 +31,6 @@ class Coverage:
     lowest: float = math.inf
     highest: float = -math.inf
     samples: int = 0
-    outliers: int = 0
     time: float = 0.0
     way: float = 0.0
     squared: float = 0.0
@@ -45,8 +42,7 @@ class Coverage:
         return Coverage(
             lowest=min(self.lowest, float(segment.angle.min())),
             highest=max(self.highest, float(segment.angle.max())),
-            samples=self.samples + segment.raw_samples - segment.outliers,
-            outliers=self.outliers + segment.outliers,
+            samples=self.samples + segment.raw_samples,
             time=self.time + segment.duration,
             way=self.way + float(speed.sum()) * segment.period,
             squared=self.squared + float(speed @ speed) * segment.period,

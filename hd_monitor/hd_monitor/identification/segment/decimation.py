@@ -1,4 +1,4 @@
-"""Conditioning of a segment of raw samples: outliers left out, and a rate higher than needed reduced."""
+"""Decimation of a segment of raw samples: a rate higher than needed is reduced, gaps are bridged or left out."""
 
 import math
 from dataclasses import dataclass
@@ -6,12 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import signal
 from scipy.interpolate import CubicSpline
-from scipy.ndimage import median_filter
 
 from ...arrays import BoolArray, FloatArray
-
-OUTLIER = 8.0
-"""Robust standard deviations by which a sample must stick out of its neighbours to be left out."""
 
 RATE_OVER_LINE = 2.8
 RATE_OVER_NATURAL = 6.4
@@ -41,8 +37,6 @@ class Decimated:
         Number of the raw sample at which the first one stands.
     highest_frequency : float
         [Hz] up to which the values can be trusted.
-    outliers : int
-        Raw samples left out because they stuck out of their neighbours.
     """
 
     values: FloatArray
@@ -50,32 +44,27 @@ class Decimated:
     factor: int
     first: int
     highest_frequency: float
-    outliers: int
 
 
-def condition(raw: FloatArray, period: float, line: float, natural: float) -> Decimated:
-    """Leave out outliers, and reduce the sampling rate where the signal needs much less.
+def decimate(raw: FloatArray, period: float, line: float, natural: float) -> Decimated:
+    """Reduce the sampling rate where the signal needs much less.
 
     Parameters
     ----------
     raw : ndarray, shape (raw samples,)
-        NaN where missing.
+        NaN where missing, spikes included.
     period : float
         Raw sample period [s].
     line, natural : float
         Highest line frequency and highest natural frequency of interest [Hz].
     """
     used = np.isfinite(raw)
-    spikes = np.zeros(raw.shape, dtype=np.bool_)
-    spikes[used] = outliers(raw[used])
-    used &= ~spikes
-    count = int(spikes.sum())
     factor = math.floor(1.0 / (period * max(RATE_OVER_LINE * line, RATE_OVER_NATURAL * natural)))
     half = _TAPS // 2 * factor
     lost = 2.0 * half / raw.size  # the filter has no output at the ends
     if factor < 2 or lost > (_LOSS_DEAR if factor >= _WORTH_MUCH else _LOSS) or np.count_nonzero(used) < 8:
         values = np.where(used, raw, 0.0)
-        return Decimated(values=values, used=used, factor=1, first=0, highest_frequency=0.5 / period, outliers=count)
+        return Decimated(values=values, used=used, factor=1, first=0, highest_frequency=0.5 / period)
     taps = signal.firwin(2 * half + 1, 0.43 * 2.0 / factor, window=("kaiser", 6.0))
     values = np.convolve(_bridge(raw, used), taps, mode="valid")[::factor]
     hole = _in_hole(used)
@@ -86,7 +75,6 @@ def condition(raw: FloatArray, period: float, line: float, natural: float) -> De
         factor=factor,
         first=half,
         highest_frequency=PASS_BAND / (factor * period),
-        outliers=count,
     )
 
 
@@ -107,15 +95,3 @@ def _in_hole(used: BoolArray) -> BoolArray:
     for first, last in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
         hole[first:last] = last - first > _BRIDGED
     return hole
-
-
-def outliers(values: FloatArray) -> BoolArray:
-    """Mark samples that stick out of their neighbours: more than any smooth vibration does, however it swells."""
-    if values.size < 16:
-        return np.zeros(values.shape, dtype=np.bool_)
-    difference = np.abs(values - median_filter(values, 5, mode="nearest"))
-    limit = OUTLIER * 1.4826 * float(np.median(difference))
-    suspect = difference > limit
-    if not suspect.any():
-        return suspect
-    return np.asarray(suspect & (difference > 2.0 * median_filter(np.abs(values), 9, mode="nearest")))

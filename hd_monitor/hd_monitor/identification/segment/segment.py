@@ -12,7 +12,7 @@ from ...arrays import BoolArray, FloatArray
 from ...errors import ParameterError
 from ...orders.orthonormal import orthonormal
 from ...reducer import Reducer
-from .decimation import condition
+from .decimation import decimate
 from .path import Motion, Path, paths_along
 from .tones import foreign_tones, tone_columns
 from .torque import own_acceleration, regress_torque
@@ -57,8 +57,6 @@ class Segment:
         Half the sensor's sampling rate [Hz].
     raw_samples : int
         Samples of the sensor behind it.
-    outliers : int
-        Of these, left out because they stuck out of their neighbours.
     """
 
     start: float
@@ -74,7 +72,6 @@ class Segment:
     highest_frequency: float
     raw_highest: float
     raw_samples: int
-    outliers: int
 
     def __len__(self) -> int:
         """Return the number of samples, those left out included."""
@@ -171,7 +168,7 @@ class SegmentBuilder:
         )
         top_speed = float(np.abs(speed).max())
         line = (self.harmonics * self.reducer.output_orders.flexspline + _SIDE_ORDERS) * top_speed / math.tau
-        signal = condition(raw, period, line, FREQUENCY_MARGIN * self.natural_frequency)
+        signal = decimate(raw, period, line, FREQUENCY_MARGIN * self.natural_frequency)
         places = signal.first + signal.factor * np.arange(signal.values.size)
         angle, speed, measured = angle[places], speed[places], measured[places]
         step = period * signal.factor
@@ -201,7 +198,6 @@ class SegmentBuilder:
             highest_frequency=signal.highest_frequency,
             raw_highest=0.5 / period,
             raw_samples=int(np.isfinite(raw).sum()),
-            outliers=signal.outliers,
         )
 
     def _substeps(self, line: float, step: float) -> int:

@@ -1,9 +1,9 @@
-"""Conditioning of raw samples: outliers go, a reduced rate keeps what matters and lets nothing fold into it."""
+"""Decimation: a reduced rate keeps what matters and lets nothing fold into it."""
 
 import numpy as np
 import pytest
 
-from hd_monitor.identification.segment.decimation import PASS_BAND, condition, outliers
+from hd_monitor.identification.segment.decimation import PASS_BAND, decimate
 
 RATE = 4000.0
 TIMES = np.arange(16_000) / RATE
@@ -20,7 +20,7 @@ def amplitude(values, times, frequency):
 
 
 def test_a_rate_far_higher_than_needed_is_reduced_and_the_pass_band_kept():
-    result = condition(tone(LINE), 1.0 / RATE, LINE, NATURAL)
+    result = decimate(tone(LINE), 1.0 / RATE, LINE, NATURAL)
     assert result.factor > 4
     assert result.highest_frequency == pytest.approx(PASS_BAND * RATE / result.factor)
     times = (result.first + result.factor * np.arange(result.values.size)) / RATE
@@ -29,54 +29,39 @@ def test_a_rate_far_higher_than_needed_is_reduced_and_the_pass_band_kept():
 
 
 def test_the_whole_trusted_band_passes_to_a_thousandth():
-    highest = condition(tone(LINE), 1.0 / RATE, LINE, NATURAL).highest_frequency
+    highest = decimate(tone(LINE), 1.0 / RATE, LINE, NATURAL).highest_frequency
     for frequency in np.linspace(2.0, highest, 12):
-        result = condition(tone(frequency), 1.0 / RATE, LINE, NATURAL)
+        result = decimate(tone(frequency), 1.0 / RATE, LINE, NATURAL)
         times = (result.first + result.factor * np.arange(result.values.size)) / RATE
         assert amplitude(result.values, times, frequency) == pytest.approx(1.0, abs=1.5e-3)
 
 
 def test_nothing_folds_into_the_trusted_band():
-    factor = condition(tone(LINE), 1.0 / RATE, LINE, NATURAL).factor
+    factor = decimate(tone(LINE), 1.0 / RATE, LINE, NATURAL).factor
     reduced = RATE / factor
     for target in np.linspace(10.0, PASS_BAND * reduced, 8):
-        result = condition(tone(reduced - target), 1.0 / RATE, LINE, NATURAL)
+        result = decimate(tone(reduced - target), 1.0 / RATE, LINE, NATURAL)
         assert np.abs(result.values).max() < 2e-3
 
 
 def test_a_rate_that_is_just_enough_is_kept():
     raw = np.random.default_rng(1).standard_normal(2000)
-    result = condition(raw, 1.0 / 450.0, LINE, NATURAL)
+    result = decimate(raw, 1.0 / 450.0, LINE, NATURAL)
     assert result.factor == 1
     assert result.first == 0
     assert np.array_equal(result.values, raw)
     assert result.highest_frequency == pytest.approx(225.0)
 
 
-def test_spikes_go_and_a_swelling_vibration_stays():
-    rng = np.random.default_rng(2)
-    signal = tone(50.0) * (0.2 + np.exp(-((TIMES - 2.0) ** 2) / 0.1)) + 0.01 * rng.standard_normal(TIMES.size)
-    assert not outliers(signal).any()
-    places = rng.choice(TIMES.size, 30, replace=False)
-    spiked = signal.copy()
-    spiked[places] += rng.choice([-1.0, 1.0], 30) * 5.0
-    assert set(places) == set(np.flatnonzero(outliers(spiked)))
-
-
-def test_noise_alone_has_hardly_an_outlier():
-    count = sum(int(outliers(np.random.default_rng(seed).standard_normal(4000)).sum()) for seed in range(20))
-    assert count <= 2
-
-
 def test_a_sample_lost_here_and_there_is_bridged_and_a_hole_is_left_out():
     raw = tone(60.0)
     raw[5000] = np.nan
-    bridged = condition(raw, 1.0 / RATE, LINE, NATURAL)
+    bridged = decimate(raw, 1.0 / RATE, LINE, NATURAL)
     assert bridged.used.all()
     times = (bridged.first + bridged.factor * np.arange(bridged.values.size)) / RATE
     assert bridged.values == pytest.approx(np.cos(2.0 * np.pi * 60.0 * times + 0.3), abs=2e-3)
     raw[8000:8100] = np.nan
-    holed = condition(raw, 1.0 / RATE, LINE, NATURAL)
+    holed = decimate(raw, 1.0 / RATE, LINE, NATURAL)
     centres = holed.first + holed.factor * np.arange(holed.values.size)
     assert not holed.used[(centres >= 8000) & (centres < 8100)].any()
     assert holed.used[(centres < 7900) | (centres > 8200)].all()
