@@ -30,7 +30,7 @@ from hd_monitor.diagnosis.judge import Judge
 from hd_monitor.diagnosis.verdict import Component
 from hd_monitor.errors import HdMonitorError
 from hd_monitor.identification.identifier import Identifier
-from hd_monitor.orders.regression import fit_lines
+from hd_monitor.orders.samples import fit_lines
 from hd_monitor.orders.zoom import zoom_spectrum
 from hd_monitor.reducer import LinePair
 

@@ -4,6 +4,12 @@ from collections.abc import Mapping
 
 from ..identification.limitation import Limitation, LimitationCode
 
+_BOTH_LINES = "{order:g} and {next_order:g} cycles per output revolution"
+_BOTH_DIRECTIONS = "; ".join(
+    f"{{{d}}}: {{{d}_line:.3g}} ± {{{d}_line_std:.1g}} and {{{d}_next_line:.3g}} ± {{{d}_next_line_std:.1g}}"
+    for d in ("first", "second")
+)
+
 SENTENCES: Mapping[LimitationCode, str] = {
     LimitationCode.NATURAL_FREQUENCY_CORRECTED: (
         "the vibration fits a natural frequency of {fitted_hz:.1f} Hz, not the {given_hz:g} Hz given: correct "
@@ -90,6 +96,50 @@ SENTENCES: Mapping[LimitationCode, str] = {
     LimitationCode.NEAR_RESONANCE: (
         "At this speed the lines are so near the natural frequency ({given_hz:g} Hz given) that a small error in it "
         "would change the name: let the joint turn at other speeds too"
+    ),
+    LimitationCode.SIGNAL_MISSING: (
+        "The joint states carry no {field}: set input.source to {other}, or have the driver publish it"
+    ),
+    LimitationCode.SIGNAL_CONSTANT: (
+        "The signal does not change at all while the joint turns: check what the driver publishes"
+    ),
+    LimitationCode.ALL_TOO_FAST: (
+        "The joint turns too fast for the rate of its joint states, the lines lie above half of it: publish them "
+        "faster, or let the joint turn more slowly now and then"
+    ),
+    LimitationCode.PARTLY_TOO_FAST: (
+        "{share:.0%} of the motion was too fast for the rate of the joint states and was left out"
+    ),
+    LimitationCode.ONE_SPEED: (
+        "the joint turned at one speed: a fixed frequency of the machine at {lower_hz:.1f} or {upper_hz:.1f} Hz would "
+        "look the same"
+    ),
+    LimitationCode.MOTOR_SHARES_LINE: (
+        "the larger line comes exactly twice per wave-generator revolution, as ripple of the motor and a bent shaft "
+        "do: check the motor too"
+    ),
+    LimitationCode.ONE_STROKE: (
+        "One stroke only so far: what it shows must come back in others, ideally in the other direction"
+    ),
+    LimitationCode.NO_LINE_FOUND: (
+        f"No line at {_BOTH_LINES} stands out of the noise ({{directions}}): more motion lowers the noise floor"
+    ),
+    LimitationCode.LINES_TOO_SIMILAR: (
+        f"Which of the lines at {_BOTH_LINES} is larger is not certain enough ({_BOTH_DIRECTIONS}): more motion in "
+        "both directions may show it"
+    ),
+    LimitationCode.DIRECTIONS_DISAGREE: (
+        f"The directions at {_BOTH_LINES} do not agree on the larger line ({_BOTH_DIRECTIONS}): more motion in both "
+        "directions may show it"
+    ),
+    LimitationCode.STRONGER_LINE_BESIDE: (
+        f"The signal has a stronger line at about {{order_beside:.0f}} than at {_BOTH_LINES}: check "
+        "reducer.flexspline_teeth and reducer.circular_spline_teeth"
+    ),
+    LimitationCode.LINES_OF_OTHER_TEETH: (
+        f"Check the tooth numbers: lines stand at {_BOTH_LINES}, where {{order:g}}/{{next_order:g}} teeth have them "
+        "but the {given_order:g}/{given_next_order:g} given do not both; correct reducer.flexspline_teeth and "
+        "reducer.circular_spline_teeth, for with wrong ones no part can be named"
     ),
     LimitationCode.OTHER: "{text}",
 }

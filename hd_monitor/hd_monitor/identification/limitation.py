@@ -36,6 +36,19 @@ class LimitationCode(StrEnum):
     LINES_UNEXPLAINED = "lines_unexplained"
     UNCERTAINTY_WIDENED = "uncertainty_widened"
     NEAR_RESONANCE = "near_resonance"
+    # What joint states alone do not show
+    SIGNAL_MISSING = "signal_missing"
+    SIGNAL_CONSTANT = "signal_constant"
+    ALL_TOO_FAST = "all_too_fast"
+    PARTLY_TOO_FAST = "partly_too_fast"
+    ONE_SPEED = "one_speed"
+    MOTOR_SHARES_LINE = "motor_shares_line"
+    ONE_STROKE = "one_stroke"
+    NO_LINE_FOUND = "no_line_found"
+    LINES_TOO_SIMILAR = "lines_too_similar"
+    DIRECTIONS_DISAGREE = "directions_disagree"
+    STRONGER_LINE_BESIDE = "stronger_line_beside"
+    LINES_OF_OTHER_TEETH = "lines_of_other_teeth"
     # Transitional
     OTHER = "other"
 

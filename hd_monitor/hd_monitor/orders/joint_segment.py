@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from ..acquisition.record import JointSamples, Record
 from ..arrays import BoolArray, FloatArray
+from .regression import line_columns
 
 LOWEST_FREQUENCY = 3.0
 """Hz of the first line below which friction and gravity are not told from it any more."""
@@ -91,17 +92,17 @@ class JointSegment:
         Returns
         -------
         ndarray, shape (rows, 2 * lines)
-            cos(order angle), then -sin(order angle), as in `analysis.line_regression`.
+            As in :func:`line_columns`.
         """
         order = np.asarray(orders, dtype=np.float64)
-        phase = np.multiply.outer(self.angle, order)
-        gain: FloatArray | float = 1.0
+        columns = line_columns(self.angle, order)
         if self.averaged > 1:
             half = 0.5 * np.multiply.outer(self.step, order)
             below = self.averaged * np.sin(half)
             flat = np.abs(below) < 1e-9
             gain = np.where(flat, 1.0, np.sin(self.averaged * half) / np.where(flat, 1.0, below))
-        return np.concatenate([gain * np.cos(phase), -gain * np.sin(phase)], axis=1)
+            columns *= np.tile(gain, 2)
+        return columns
 
 
 class JointSegmentCutter:

@@ -12,6 +12,7 @@ from ..identification.segment.segment import Segment
 from ..identification.segment.torque import own_acceleration
 from ..model.parameters import Dynamics
 from .orthonormal import orthonormal
+from .regression import Products
 
 TURNS = 2
 """Output revolutions after which the sums start over: half orders, where no line can be, tell lines from tones."""
@@ -71,17 +72,13 @@ class OrderSpectrum:
         """Amplitudes [rad/s²] at the orders 0, 1, 2 …; half orders are left out."""
         return np.abs(np.fft.rfft(self.sums))[::TURNS][: HIGHEST_ORDER + 1] * (2.0 / max(float(self.counts.sum()), 1.0))
 
-    def products(self, orders: FloatArray) -> FloatArray:
-        """Inner products of lines of unit amplitude, cosines then negative sines, and last of the signal.
+    def products(self, orders: FloatArray) -> Products:
+        """Inner products of the lines' columns and the signal.
 
         Parameters
         ----------
         orders : ndarray, shape (lines,)
             Whole multiples of 1 / `TURNS`.
-
-        Returns
-        -------
-        ndarray, shape (2 * lines + 1, 2 * lines + 1)
         """
         place = np.rint(orders * TURNS).astype(np.intp)
         weight, signal = np.fft.fft(self.counts).conj(), np.fft.fft(self.sums).conj()  # sums of exp(+i order angle)
@@ -92,7 +89,8 @@ class OrderSpectrum:
         own = signal[place]
         column = np.concatenate([own.real, -own.imag])
         lines = np.block([[cosines, mixed], [mixed.T, sines]])
-        return np.block([[lines, column[:, None]], [column[None, :], np.array([[self.power]])]])
+        matrix = np.block([[lines, column[:, None]], [column[None, :], np.array([[self.power]])]])
+        return Products(matrix=matrix, rows=int(self.counts.sum()))
 
 
 def with_segment(

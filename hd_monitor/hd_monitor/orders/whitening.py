@@ -6,9 +6,13 @@ import numpy as np
 from scipy.linalg import solve_toeplitz
 
 from ..arrays import BoolArray, FloatArray
+from ..robust import clip
 
 TAPS = 8
 """Samples that the filter looks back: enough for servo noise, few enough to lose little at a segment's start."""
+
+CLIP = 3.0
+"""Robust standard deviations beyond which a residual is clipped."""
 
 
 def learn_whitening(residuals: Sequence[FloatArray], taps: int = TAPS) -> FloatArray:
@@ -30,8 +34,7 @@ def learn_whitening(residuals: Sequence[FloatArray], taps: int = TAPS) -> FloatA
     for residual in residuals:
         if residual.size <= 2 * taps:
             continue
-        limit = 3.0 * float(np.median(np.abs(residual))) / 0.6745
-        calm = np.clip(residual, -limit, limit) if limit > 0.0 else residual
+        calm = clip(residual, CLIP)
         power = float(calm @ calm)
         if power > 0.0:
             covariance += [calm.size / power * float(calm[lag:] @ calm[: calm.size - lag]) for lag in range(taps + 1)]

@@ -1,220 +1,165 @@
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 from scipy import stats
 
-from hd_monitor.errors import ParameterError
-from hd_monitor.orders.regression import fit_lines, line_columns
+from hd_monitor.acquisition.record import JointSamples
+from hd_monitor.orders.joint_segment import JointSegmentCutter
+from hd_monitor.orders.line_orders import LineOrders
+from hd_monitor.orders.regression import pool, solve
+from hd_monitor.orders.samples import project
+from hd_monitor.orders.segment_products import products_of_segment, residual_of_segment, trend_columns
+from hd_monitor.orders.whitening import learn_whitening
+from hd_monitor.reducer import LinePair
 
-PAIR = np.array([160.0, 162.0])
-
-
-def arc(degrees, samples=1500, start=0.3):
-    return start + np.linspace(0.0, math.radians(degrees), samples)
-
-
-def lines(angle, orders, phasors):
-    return np.exp(1j * np.multiply.outer(angle, orders)) @ np.asarray(phasors)
-
-
-@given(
-    st.floats(40.0, 700.0),
-    st.lists(st.complex_numbers(max_magnitude=10.0), min_size=4, max_size=4),
-    st.lists(st.floats(-5.0, 5.0), min_size=3, max_size=3),
-    st.integers(0, 2**32 - 1),
-)
-def test_without_noise_the_phasors_come_out_whatever_the_speed(degrees, phasors, trend, seed):
-    rng = np.random.default_rng(seed)
-    orders = np.array([158.0, 160.0, 162.0, 324.0])
-    # Ever changing speed, and half of it backwards.
-    angle = arc(degrees, 1200) + 0.02 * np.sin(np.linspace(0.0, 9.0, 1200) + rng.uniform(0, 6))
-    angle[600:] = angle[600:][::-1]
-    time = np.linspace(-1.0, 1.0, 1200)
-    values = lines(angle, orders, phasors).real + np.polynomial.polynomial.polyval(time, trend)
-    fit = fit_lines(values, angle, orders, trend_degree=2)
-    np.testing.assert_allclose(fit.phasors, phasors, atol=1e-6)
-    assert fit.samples == 1200
-    assert fit.travel == pytest.approx(np.ptp(angle))
+PAIR = LinePair(200.0, 202.0)
+ORDERS = LineOrders.of_pair(PAIR, 1, (101.0, 202.0))
 
 
-def study(degrees, runs, noise, *, orders=PAIR, seed=0, **options):
-    """Errors (real parts, then imaginary ones), variances claimed and floors, one row a run with random phases."""
-    rng = np.random.default_rng(seed)
-    angle = arc(degrees)
-    errors, claimed, floors = [], [], []
-    for _ in range(runs):
-        phasors = np.array([1.0, 0.5]) * np.exp(1j * rng.uniform(0.0, math.tau, 2))
-        fit = fit_lines(lines(angle, orders, phasors).real + noise(rng, angle.size), angle, orders, **options)
-        error = fit.phasors - phasors
-        errors.append(np.concatenate([error.real, error.imag]))
-        claimed.append(np.diag(fit.covariance))
-        floors.append(fit.noise_std)
-    return np.array(errors), np.array(claimed), np.array(floors)
+def segments(rng, signal=lambda angle: 0.0, noise=0.1, count=4, span=3.0):
+    """Segments forward over one arc, each at another speed, with friction and gravity."""
+    found = []
+    for number in range(count):
+        seconds = 3.0 + 0.5 * number
+        times = np.arange(0.0, seconds, 0.01)
+        angle = span * times / seconds
+        effort = 2.0 + 4.0 * np.sin(angle) + signal(angle) + noise * rng.standard_normal(times.size)
+        cutter = JointSegmentCutter("joint_effort", (200.0, 202.0), 0.03)
+        speed = np.full(times.size, span / seconds)
+        found += cutter.add(JointSamples(times=times, angle=angle, speed=speed, effort=effort)) + cutter.finish()
+    return found
 
 
-def white(rng, size):
-    return 0.5 * rng.standard_normal(size)
+def pooled(found, orders=ORDERS):
+    coefficients = learn_whitening([residual_of_segment(segment, orders) for segment in found])
+    products = [products_of_segment(segment, orders, coefficients) for segment in found]
+    return pool(each for each in products if each is not None)
 
 
-@pytest.mark.parametrize(("separation", "factor"), [(0.25, 5.3), (0.5, 1.68), (0.75, 1.10), (1.0, 1.0), (2.0, 1.0)])
-def test_is_unbiased_with_the_variance_of_theory(separation, factor):
-    """Separations in lines' resolutions of 180°: the variance factor is 1 / (1 - sinc²)."""
-    runs = 600
-    errors, claimed, floors = study(180.0 * separation, runs, white)
-    theory = 2.0 * 0.5**2 / 1500 / (1.0 - np.sinc(separation) ** 2)
-    assert theory == pytest.approx(factor * 2.0 * 0.5**2 / 1500, rel=0.01)
-    # Each mean within five standard errors; the variance's relative standard error is sqrt(2 / numbers), and the four
-    # errors of a run count as two because close lines' errors go together.
-    assert np.abs(errors.mean(axis=0)).max() < 5.0 * math.sqrt(theory / runs)
-    assert np.mean(errors**2) == pytest.approx(theory, rel=4.0 * math.sqrt(2.0 / (2 * runs)))
-    # The claim's overdispersion is that of its floor, from at least 12 degrees of freedom.
-    assert claimed.mean() == pytest.approx(theory, rel=4.0 * math.sqrt(2.0 / (12 * runs)) + 0.01)
-    assert np.mean(floors**2) == pytest.approx(0.25, rel=4.0 * math.sqrt(2.0 / (12 * runs)))
+def fit(found, orders=ORDERS):
+    return solve(pooled(found, orders), orders)
 
 
-def test_covers_at_its_confidence_with_the_floor_s_degrees_of_freedom():
-    rng = np.random.default_rng(8)
-    angle, hits, runs = arc(90.0), 0, 1500
-    for _ in range(runs):
-        fit = fit_lines(lines(angle, PAIR, [0.3, 0.2j]).real + white(rng, angle.size), angle, PAIR)
-        error = (fit.phasors[0].real - 0.3) / math.sqrt(fit.covariance[0, 0])
-        hits += abs(error) < stats.t.ppf(0.975, fit.floor_freedom[0])
-    assert hits / runs == pytest.approx(0.95, abs=4.0 * math.sqrt(0.95 * 0.05 / runs))
+def test_reference_orders_are_beside_the_pair_and_off_the_motor():
+    assert ORDERS.nuisance.tolist() == [101.0]  # twice the motor's order is the flexspline's own line in this mount
+    assert len(ORDERS.reference_orders) == 24
+    assert np.abs(np.subtract.outer(ORDERS.reference_orders, PAIR)).min() == pytest.approx(2.0)
+    assert LineOrders.of_pair(LinePair(60.0, 62.0)).reference_orders.min() >= 60.0 - 5 * 2.0
+    near = LineOrders.of_pair(LinePair(16.0, 18.0), 1, (8.0,))
+    assert np.abs(near.reference_orders - 8.0).min() > 1.0
+    assert near.reference_orders.min() > 2.0
 
 
-def test_the_floor_is_that_around_the_lines_not_that_of_the_band():
-    """Red noise: the band's standard deviation would claim errors many times too large or too small."""
+def test_finds_phasors_under_friction_and_gravity():
+    phasors = np.array([0.2 * np.exp(0.7j), 0.1 * np.exp(-2.0j)])
 
-    def red(rng, size):
-        return np.convolve(rng.standard_normal(size + 20), np.ones(21), mode="valid")
+    def lines(angle):
+        return (np.exp(1j * np.multiply.outer(angle, [200.0, 202.0])) @ phasors).real
 
-    errors, claimed, _ = study(360.0, 400, red)
-    assert np.mean(claimed) == pytest.approx(np.mean(errors**2), rel=0.2)
-    size = 1500
-    frequency = 161.0 / size  # cycles per sample: 161 cycles over 360°
-    gain = abs(np.sum(np.exp(-2j * math.pi * frequency * np.arange(21)))) ** 2
-    assert np.mean(errors**2) == pytest.approx(2.0 * gain / size, rel=0.2)
-    assert gain < 0.5 * 21.0  # so the test could tell the difference
+    found = fit(segments(np.random.default_rng(1), lines, noise=0.02))
+    np.testing.assert_allclose(found.phasors, phasors, atol=5.0 * max(found.amplitude_stds))
+    assert max(found.amplitude_stds) < 0.01
+    assert max(found.chances) < 1e-9
+    assert found.noise == pytest.approx(0.02, rel=0.1)
 
 
-def test_spikes_hardly_hurt_and_the_claim_knows():
-    def spiky(rng, size):
-        return white(rng, size) + 40.0 * rng.standard_normal(size) * (rng.random(size) < 0.02)
-
-    errors, claimed, _ = study(180.0, 300, spiky)
-    plain, _, _ = study(180.0, 300, spiky, robust=False)
-    theory = 2.0 * 0.25 / 1500
-    assert np.mean(errors**2) < 1.25 * theory
-    assert np.mean(plain**2) > 50.0 * theory
-    assert claimed.mean() == pytest.approx(np.mean(errors**2), rel=0.15)
-
-
-def test_counts_outliers():
+def test_errors_are_as_large_as_claimed():
     rng = np.random.default_rng(2)
-    angle = arc(180.0)
-    values = lines(angle, PAIR, [1.0, 1.0]).real + 0.01 * rng.standard_normal(angle.size)
-    quiet = fit_lines(values, angle, PAIR).outliers
-    values[::100] += 5.0
-    assert 15 <= fit_lines(values, angle, PAIR).outliers <= 15 + 2 * quiet + 30
+    pulls, floors = [], []
+    for _ in range(150):
+        phases = rng.uniform(0.0, math.tau, 2)
+        found = fit(
+            segments(rng, lambda angle, p=phases: 0.1 * np.cos(200 * angle + p[0]) + 0.06 * np.cos(202 * angle + p[1]))
+        )
+        error = found.phasors - np.array([0.1, 0.06]) * np.exp(1j * phases)
+        parts = np.concatenate([error.real, error.imag])
+        pulls.append(float(parts @ np.linalg.solve(found.covariance, parts)) / 4.0)
+        floors.append(found.floor)
+    # The ratio follows F with 4 and the floor's degrees of freedom (about 33 here); its mean is ν / (ν - 2).
+    assert np.mean(pulls) == pytest.approx(1.06, abs=4.0 * math.sqrt(0.5 / 150))
+    assert np.mean(floors) == pytest.approx(1.0, abs=0.15)
 
 
-def test_missing_samples_and_zero_weights_are_left_out():
+def test_chance_is_uniform_where_there_is_no_line():
     rng = np.random.default_rng(3)
-    angle = arc(200.0)
-    values = lines(angle, PAIR, [1.0, 0.4j]).real + white(rng, angle.size)
-    keep = rng.random(angle.size) > 0.3
-    holes = np.where(keep, values, np.nan)
-    first = fit_lines(holes, angle, PAIR)
-    second = fit_lines(values, angle, PAIR, weights=keep.astype(float))
-    assert first.samples == second.samples == keep.sum()
-    np.testing.assert_allclose(first.phasors, second.phasors, rtol=1e-9)
-    np.testing.assert_allclose(first.covariance, second.covariance, rtol=1e-6)
+    chances = [chance for _ in range(150) for chance in fit(segments(rng)).chances]
+    assert stats.kstest(chances, "uniform").pvalue > 1e-3
 
 
-def test_weights_are_inverse_variances():
-    def uneven(rng, size):
-        return np.where(np.arange(size) < size // 2, 1.0, 0.1) * rng.standard_normal(size)
-
-    weights = np.where(np.arange(1500) < 750, 1.0, 100.0)
-    weighted, claimed, _ = study(720.0, 300, uneven, weights=weights)
-    plain, _, _ = study(720.0, 300, uneven)
-    assert np.mean(weighted**2) < 0.1 * np.mean(plain**2)
-    assert claimed.mean() == pytest.approx(np.mean(weighted**2), rel=0.2)
-
-
-def test_nuisance_terms_are_taken_out_even_when_they_repeat_each_other():
-    angle = arc(180.0)
-    friction = np.where(np.arange(angle.size) % 500 < 250, 1.0, -1.0)
-    gravity = np.sin(angle)
-    values = lines(angle, PAIR, [0.2, 0.1]).real + 7.0 * friction + 20.0 * gravity + 3.0
-    nuisance = np.column_stack([friction, gravity, friction + gravity, np.ones_like(angle), np.zeros_like(angle)])
-    fit = fit_lines(values, angle, PAIR, nuisance=nuisance)
-    np.testing.assert_allclose(fit.phasors, [0.2, 0.1], atol=1e-9)
-
-
-def test_strokes_over_one_arc_add_signal_to_noise_ratio_but_no_resolution():
-    one = arc(90.0)
-    many = np.concatenate([one, one[::-1]] * 8)
+def test_amplitudes_that_vary_widen_the_claim():
+    """Over the arc or from segment to stroke: a line then spreads into skirts, which the floor beside the pair sees."""
     rng = np.random.default_rng(4)
-    single = fit_lines(white(rng, one.size), one, PAIR)
-    pooled = fit_lines(white(rng, many.size), many, PAIR)
-    assert pooled.travel == pytest.approx(single.travel)
-    shapes = [np.trace(fit.covariance) / fit.noise_std[0] ** 2 for fit in (pooled, single)]
-    assert shapes[0] / shapes[1] == pytest.approx(1.0 / 16.0, rel=1e-3)
+
+    def varying(angle):
+        return 0.3 * np.cos(200.0 * angle) * (1.0 + 0.8 * np.cos(5.0 * angle + rng.uniform(0.0, math.tau)))
+
+    steady = fit(segments(rng, lambda angle: 0.3 * np.cos(200.0 * angle)))
+    uneven = fit(segments(rng, varying))
+    assert steady.floor < 2.0
+    assert uneven.floor > 3.0 * steady.floor
+    assert uneven.amplitude_stds[0] > 1.5 * steady.amplitude_stds[0]
 
 
-def test_chi_square_of_nothing_is_chi_square():
+def test_a_stronger_line_beside_the_pair_is_reported():
+    rng = np.random.default_rng(5)
+    found = fit(segments(rng, lambda angle: 0.4 * np.cos(190.0 * angle)))
+    assert found.rival == pytest.approx(190.0, abs=2.0)
+    assert min(found.chances) > 1e-3
+    assert fit(segments(rng, lambda angle: 0.4 * np.cos(200.0 * angle))).rival is None
+
+
+def test_spikes_are_clipped():
     rng = np.random.default_rng(6)
-    angle = arc(360.0, 800)
-    sizes = [fit_lines(white(rng, angle.size), angle, PAIR).chi_square(1) / 2.0 for _ in range(800)]
-    assert stats.kstest(sizes, stats.f(2, 52).cdf).pvalue > 1e-3
+
+    def spiky(angle):
+        return 0.2 * np.cos(200.0 * angle) + 30.0 * (rng.random(angle.size) < 0.01)
+
+    found = fit(segments(rng, spiky))
+    assert found.amplitudes[0] == pytest.approx(0.2, abs=0.05)
+    assert found.noise < 0.2
 
 
-def test_amplitudes_and_their_standard_deviations():
-    errors, _, _ = study(180.0, 500, white)
-    angle = arc(180.0)
-    fit = fit_lines(lines(angle, PAIR, [1.0, 0.5j]).real + white(np.random.default_rng(1), angle.size), angle, PAIR)
-    np.testing.assert_allclose(fit.amplitudes, np.abs(fit.phasors))
-    np.testing.assert_allclose(fit.amplitude_stds, errors.std(), rtol=0.35)
+def test_two_lines_explain_more_than_one_only_if_there_are_two():
+    rng = np.random.default_rng(7)
+    for second, more in ((0.0, False), (0.2, True)):
+        found = segments(rng, lambda angle, a=second: 0.2 * np.cos(200.0 * angle) + a * np.cos(202.0 * angle))
+        single = replace(ORDERS, lines=np.array([200.0]))
+        evidence = []
+        for orders in (ORDERS, single):
+            solution = fit(found, orders)
+            assert solution is not None
+            evidence.append(solution.log_evidence)
+        assert (evidence[0] - evidence[1] > math.log(1000.0)) is more
 
 
-@settings(max_examples=30)
-@given(st.floats(1e-6, 1e6), st.floats(0.2, 5.0))
-def test_the_result_scales_with_the_unit_and_the_angle(unit, gear):
-    rng = np.random.default_rng(9)
-    angle = arc(100.0, 700)
-    values = lines(angle, PAIR, [1.0, 0.5]).real + white(rng, angle.size)
-    one = fit_lines(values, angle, PAIR)
-    other = fit_lines(unit * values, gear * angle, PAIR / gear)
-    np.testing.assert_allclose(other.phasors, unit * one.phasors, rtol=1e-5, atol=1e-6 * unit)
-    np.testing.assert_allclose(other.noise_std, unit * one.noise_std, rtol=1e-3)
+def test_too_little_to_go_on_is_no_fit():
+    rng = np.random.default_rng(8)
+    assert pool([]) is None
+    (short,) = segments(rng, count=1, span=0.3)
+    assert short.values.size == 300
+    assert fit([short]) is None  # 17° tell nothing of lines 2 cycles a revolution apart
+    still = replace(short, values=np.full(short.values.size, 2.0))
+    assert products_of_segment(still, ORDERS, np.ones(1)) is None
+    brief = segments(rng, count=1)[0]
+    few = slice(0, 24)
+    brief = replace(
+        brief,
+        times=brief.times[few],
+        angle=brief.angle[few],
+        speed=brief.speed[few],
+        values=brief.values[few],
+        starts=brief.starts[few],
+        step=brief.step[few],
+    )
+    assert products_of_segment(brief, ORDERS, np.ones(9)) is None
 
 
-def test_columns_follow_the_phasor_s_convention():
-    angle = arc(30.0, 50)
-    np.testing.assert_allclose(line_columns(angle, [3.0]) @ [0.6, 0.8], ((0.6 + 0.8j) * np.exp(3j * angle)).real)
-
-
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [
-        ({"values": np.ones(3)}, "one length"),
-        ({"orders": [160.0, 160.0]}, "twice"),
-        ({"orders": [-1.0]}, "positive"),
-        ({"orders": []}, "no list of lines"),
-        ({"weights": np.full(100, -1.0)}, "never negative"),
-        ({"weights": np.ones(3)}, "one row a sample"),
-        ({"nuisance": np.ones(100)}, "one row a sample"),
-        ({"angle": np.zeros(100)}, "longer motion"),
-        ({"values": np.full(100, np.nan)}, "longer motion"),
-        ({"orders": [160.0, 160.0 + 1e-10]}, "apart"),
-    ],
-)
-def test_refuses_what_determines_no_lines(change, words):
-    arguments = {"values": np.ones(100), "angle": arc(90.0, 100), "orders": PAIR} | change
-    values, angle, orders = (arguments.pop(name) for name in ("values", "angle", "orders"))
-    with pytest.raises(ParameterError, match=words):
-        fit_lines(values, angle, orders, **arguments)
+def test_the_trend_cannot_follow_a_line():
+    segment = segments(np.random.default_rng(9), count=1)[0]
+    trend = trend_columns(segment, ORDERS.trend)
+    line = segment.columns([200.0])
+    assert np.sum(project(trend, line) ** 2) > 0.99 * np.sum(line**2)
+    slow = np.column_stack([np.ones(segment.angle.size), np.sin(segment.angle), np.sin(2.0 * segment.angle)])
+    assert np.abs(project(trend, slow)).max() < 1e-4

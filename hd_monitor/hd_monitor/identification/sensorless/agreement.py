@@ -1,4 +1,4 @@
-"""Whether the directions of motion agree on a spline, and in words why not: the sensorless mode's rule of evidence."""
+"""Whether the directions of motion agree on a spline: the sensorless mode's rule of evidence."""
 
 import math
 from collections.abc import Sequence
@@ -6,9 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.stats import norm
+from scipy.stats import t as t_distribution
 
-from ...orders.pair import CHANCE, PairEstimate
+from ...orders.regression import CHANCE, LineFit
 from ...reducer import LinePair
+from ..limitation import Limitation, LimitationCode, blocker
+from .pooling import GroupFit
 
 AGREEMENT = 0.9
 """Confidence that each direction alone must have in the spline that is named."""
@@ -48,17 +51,18 @@ class DirectionEvidence:
     samples: int
 
     @classmethod
-    def of(cls, name: str, estimate: PairEstimate, ratio: float, segments: int) -> "DirectionEvidence":
-        """Sum up an estimate; `ratio` is ``diagnosis.both_ratio``."""
+    def of(cls, group: GroupFit, ratio: float) -> "DirectionEvidence":
+        """Sum up the fit of the pair to a group of segments; `ratio` is ``diagnosis.both_ratio``."""
+        fit = group.fit
         return cls(
-            name=name,
-            amplitude=estimate.amplitude,
-            std=estimate.std,
-            chance=estimate.chance,
-            dominance=estimate.dominance(ratio),
-            rival=estimate.rival,
-            segments=segments,
-            samples=estimate.rows,
+            name=group.name,
+            amplitude=LinePair(*fit.amplitudes.tolist()),
+            std=LinePair(*fit.amplitude_stds.tolist()),
+            chance=LinePair(*fit.chances.tolist()),
+            dominance=dominance(fit, ratio),
+            rival=fit.rival,
+            segments=len(group.segments),
+            samples=fit.rows,
         )
 
     @property
@@ -71,10 +75,16 @@ class DirectionEvidence:
         """Whether the two lines are surely about the same size: neither is the larger one."""
         return max(self.dominance) <= 1.0 - AGREEMENT
 
-    def __str__(self) -> str:
-        """Say what was found, in words."""
-        cs, fs = (f"{size:.3g} ± {std:.1g}" for size, std in zip(self.amplitude, self.std, strict=True))
-        return f"{self.name}: {cs} and {fs}"
+
+def dominance(fit: LineFit, ratio: float) -> LinePair:
+    """Confidence, one-sided, that each line of a pair is larger than the other one divided by `ratio`."""
+    covariance = fit.amplitude_covariance
+    confidence = []
+    for weights in ((ratio, -1.0), (-1.0, ratio)):
+        w = np.array(weights)
+        deviation = math.sqrt(max(float(w @ covariance @ w), 1e-300))
+        confidence.append(float(t_distribution.cdf(float(w @ fit.amplitudes) / deviation, fit.freedom)))
+    return LinePair(*confidence)
 
 
 def pooled_dominance(directions: Sequence[DirectionEvidence]) -> LinePair:
@@ -84,8 +94,8 @@ def pooled_dominance(directions: Sequence[DirectionEvidence]) -> LinePair:
     return LinePair(*norm.cdf(deviates.sum(axis=0) / np.sqrt(len(directions))).tolist())
 
 
-def other_teeth(lead: float, pair: LinePair, chances: Sequence[LinePair], given: LinePair) -> tuple[str, ...]:
-    """Say that other tooth numbers fit better, if they do; only both of their lines are evidence, one fits two pairs.
+def other_teeth(lead: float, pair: LinePair, chances: Sequence[LinePair], given: LinePair) -> tuple[Limitation, ...]:
+    """Limit a result if other tooth numbers fit better; only both of their lines are evidence, one fits two pairs.
 
     Parameters
     ----------
@@ -101,49 +111,48 @@ def other_teeth(lead: float, pair: LinePair, chances: Sequence[LinePair], given:
     both = all(min(chance) < CHANCE for chance in zip(*chances, strict=True))
     if lead < BETTER_TEETH or not both:
         return ()
-    other, own = (f"{lines.circular_spline:g}/{lines.flexspline:g}" for lines in (pair, given))
-    return (
-        f"Check the tooth numbers: lines stand at {pair.circular_spline:g} and {pair.flexspline:g} cycles per output "
-        f"revolution, where {other} teeth have them but the {own} given do not both; correct "
-        "reducer.flexspline_teeth and reducer.circular_spline_teeth, for with wrong ones no part can be named",
-    )
+    orders = {"order": pair.circular_spline, "next_order": pair.flexspline}
+    own = {"given_order": given.circular_spline, "given_next_order": given.flexspline}
+    return (blocker(LimitationCode.LINES_OF_OTHER_TEETH, **orders, **own),)
 
 
-def reasons_against_naming(
+def disagreements(
     directions: Sequence[DirectionEvidence], lines: LinePair, confidence: float
-) -> tuple[str, ...]:
-    """Reasons why no spline may be named on this evidence, for a technician; none if one, or both, may be.
+) -> tuple[Limitation, ...]:
+    """Reasons why no spline may be named on this evidence; none if one, or both, may be.
 
     Parameters
     ----------
     directions : sequence of DirectionEvidence
+        At most two.
     lines : LinePair
         Orders of the pair [cycles per output revolution].
     confidence : float
-        ``diagnosis.confidence``, asked of all directions together; each one alone must have `AGREEMENT`.
+        ``diagnosis.confidence``, which all directions together must have; each one alone must have `AGREEMENT`.
     """
-    pair = f"{lines.circular_spline:g} and {lines.flexspline:g} cycles per output revolution"
     if len(directions) < 2:
-        return ("One stroke only so far: what it shows must come back in others, the other direction best of all",)
+        return (blocker(LimitationCode.ONE_STROKE),)
+    pair = {"order": lines.circular_spline, "next_order": lines.flexspline}
     reasons = []
     rivals = [direction.rival for direction in directions if direction.rival is not None]
     if len(rivals) == len(directions):
-        reasons.append(
-            f"The signal has a stronger line at about {rivals[0]:.0f} than at {pair}: "
-            "check reducer.flexspline_teeth and reducer.circular_spline_teeth"
-        )
+        reasons.append(blocker(LimitationCode.STRONGER_LINE_BESIDE, order_beside=rivals[0], **pair))
     silent = [direction.name for direction in directions if not direction.found]
     if silent:
-        reasons.append(
-            f"No line at {pair} stands out of the noise ({'; '.join(silent)}): more motion lowers the noise floor"
-        )
-        return tuple(reasons)
+        return (*reasons, blocker(LimitationCode.NO_LINE_FOUND, directions="; ".join(silent), **pair))
     each = np.min([direction.dominance for direction in directions], axis=0)
     named = (each >= AGREEMENT) & (np.array(pooled_dominance(directions)) >= confidence)
     if not named.any() and not all(direction.alike for direction in directions):
         leaders = {direction.amplitude.circular_spline > direction.amplitude.flexspline for direction in directions}
-        why = "are not told apart surely enough" if len(leaders) == 1 else "do not agree on the larger line"
-        shown = "; ".join(str(direction) for direction in directions)
-        who = "The lines" if len(leaders) == 1 else "The directions"
-        reasons.append(f"{who} at {pair} {why} ({shown}): more motion in both directions may tell")
+        code = LimitationCode.LINES_TOO_SIMILAR if len(leaders) == 1 else LimitationCode.DIRECTIONS_DISAGREE
+        shown = _amplitudes("first", directions[0]) | _amplitudes("second", directions[1])
+        reasons.append(blocker(code, **pair, **shown))
     return tuple(reasons)
+
+
+def _amplitudes(place: str, direction: DirectionEvidence) -> dict[str, float | str]:
+    """A direction's amplitudes and their standard deviations, in the signal's unit, as values of a limitation."""
+    values: dict[str, float | str] = {place: direction.name}
+    for line, size, std in zip(("line", "next_line"), direction.amplitude, direction.std, strict=True):
+        values |= {f"{place}_{line}": size, f"{place}_{line}_std": std}
+    return values

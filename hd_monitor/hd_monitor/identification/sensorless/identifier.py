@@ -1,41 +1,25 @@
 """The two splines' shares from joint states alone: motor effort or velocity as the vibration signal."""
 
 import math
-from collections import deque
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from ...acquisition.record import JointSamples
 from ...arrays import FloatArray
-from ...orders.gram import Gram, PairOrders, gram_of_segment, residual_of_segment
 from ...orders.joint_segment import JointSegment, JointSegmentCutter, one_speed
-from ...orders.pair import PairEstimate, estimate_pair
-from ...orders.whitening import learn_whitening
+from ...orders.line_orders import LineOrders
+from ...orders.regression import LineFit
 from ...reducer import LinePair
 from ...settings import JointSettings
-from ..limitation import Limitation, LimitationCode
+from ..limitation import Limitation, LimitationCode, blocker
 from ..result import Identification, LineEstimate
-from .agreement import DirectionEvidence, other_teeth, reasons_against_naming
-from .doubts import STILL, complaints_about, doubts_about
-
-LEAST_SHARE = 0.1
-"""Part of the motion that a direction must have to be heard."""
+from .agreement import DirectionEvidence, disagreements, other_teeth
+from .limitations import blockers_of_input, doubts_of_result
+from .pooling import SegmentPool
 
 NEIGHBOURS = (-4, -3, -2, -1, 1, 2, 3, 4)
 """Differences of other tooth numbers that are watched from those given."""
-
-RELEARN = 3.0
-"""Growth of the data after which the background is learnt anew."""
-
-
-@dataclass(slots=True, eq=False)
-class _Pooled:
-    """A segment with its sums for every pair, k = 1 first; None where the pair is too fast for the sampling rate."""
-
-    segment: JointSegment
-    grams: list[Gram | None]
 
 
 class SensorlessIdentifier:
@@ -73,24 +57,15 @@ class SensorlessIdentifier:
 
     def __init__(self, settings: JointSettings) -> None:
         self._settings = settings
-        self._reducer = settings.reducer
-        self._memory = settings.analysis.memory
-        self._ratio = settings.diagnosis.both_ratio
-        self._confidence = settings.diagnosis.confidence
-        reduction = self._reducer.reduction
-        cs, fs = self._reducer.output_orders
+        reduction, (cs, fs) = settings.reducer.reduction, settings.reducer.output_orders
         motor = (reduction, 2.0 * reduction)
-        self._harmonics = range(1, settings.analysis.harmonics + 1)
-        self._orders = [PairOrders.around(LinePair(cs, fs), k, motor) for k in self._harmonics]
-        # Teeth near those given share a line with them, or lie where travel does not part them: they are watched, too.
+        orders = [LineOrders.of_pair(LinePair(cs, fs), k, motor) for k in range(1, settings.analysis.harmonics + 1)]
+        # Teeth near those given share a line with them, or lie where travel does not separate them.
         self._neighbours = [LinePair(cs + shift, fs + shift) for shift in NEIGHBOURS]
-        self._orders += [PairOrders.around(pair, 1, motor) for pair in self._neighbours]
+        orders += [LineOrders.of_pair(pair, 1, motor) for pair in self._neighbours]
         minimum_speed = settings.analysis.minimum_speed * 2.0 * np.pi / 60.0 / reduction
         self._cutter = JointSegmentCutter(settings.input.source, (cs, fs), minimum_speed)
-        self._pooled: deque[_Pooled] = deque()
-        self._coefficients = np.ones(1)
-        self._learnt = 0.0
-        self._seen = 0.0
+        self._pool = SegmentPool(orders, settings.analysis.memory)
         self._messages = 0
         self._usable = 0
         self._latest: Identification | None = None
@@ -117,10 +92,10 @@ class SensorlessIdentifier:
             self._latest = self._identify()
             self._stale = False
         if self._latest is None:
-            complaints = complaints_about(
+            blockers = blockers_of_input(
                 self._settings.input.source, messages=self._messages, usable=self._usable, too_fast=self._too_fast
             )
-            return self._nothing(complaints) if complaints else None
+            return _nothing(blockers) if blockers else None
         return self._latest
 
     def finish(self) -> Identification | None:
@@ -129,172 +104,100 @@ class SensorlessIdentifier:
             self._append(segment)
         return self.estimate()
 
-    # Pooling -------------------------------------------------------------------------------------------------------
-
     def _append(self, segment: JointSegment) -> None:
         self._stale = True
-        self._seen += segment.duration
-        self._pooled.append(_Pooled(segment, []))
-        held = sum(pooled.segment.duration for pooled in self._pooled)
-        while len(self._pooled) > 1 and held - self._pooled[0].segment.duration >= self._memory:
-            held -= self._pooled.popleft().segment.duration
-        due = RELEARN * self._learnt if self._learnt < self._memory else self._learnt + self._memory
-        if self._seen >= due:
-            self._learnt = self._seen
-            residuals = [residual_of_segment(pooled.segment, self._orders[0]) for pooled in self._pooled]
-            self._coefficients = learn_whitening(residuals)
-            for pooled in self._pooled:
-                pooled.grams = self._grams(pooled.segment)
-        else:
-            self._pooled[-1].grams = self._grams(segment)
-
-    def _grams(self, segment: JointSegment) -> list[Gram | None]:
-        return [gram_of_segment(segment, orders, self._coefficients) for orders in self._orders]
-
-    def _groups(self) -> Iterator[tuple[str, list[_Pooled]]]:
-        """Segments that are pooled coherently: by direction, or by time if there is one direction only."""
-        names = {1: "forward", -1: "reverse"}
-        heard = [pooled for pooled in self._pooled if pooled.grams[0] is not None]
-        total = sum(pooled.segment.values.size for pooled in heard)
-        by_direction = {sign: [pooled for pooled in heard if pooled.segment.direction == sign] for sign in names}
-        kept = {
-            sign: group
-            for sign, group in by_direction.items()
-            if sum(pooled.segment.values.size for pooled in group) >= max(LEAST_SHARE * total, 1)
-        }
-        for sign, group in kept.items():
-            if len(kept) == 2 or len(group) < 2:
-                yield names[sign], group
-            else:
-                half = len(group) // 2
-                yield f"{names[sign]}, first half", group[:half]
-                yield f"{names[sign]}, second half", group[half:]
-
-    # Results -------------------------------------------------------------------------------------------------------
+        self._pool.add(segment)
 
     def _identify(self) -> Identification | None:
-        groups = list(self._groups())
-        estimates = [
-            (name, group, estimate)
-            for name, group in groups
-            if (estimate := self._estimate_group(group, 0)) is not None
-        ]
-        self._directions = tuple(
-            DirectionEvidence.of(name, estimate, self._ratio, len(group)) for name, group, estimate in estimates
-        )
-        if not estimates:
-            still = all(np.ptp(pooled.segment.values) == 0.0 for pooled in self._pooled)
-            return self._nothing((STILL,)) if still else self._latest
-        pairs = [estimate for _, _, estimate in estimates]
-        mean, covariance = _mean_amplitudes(pairs)
+        """Identify from the pooled segments; the latest result stays where they do not determine the pair."""
+        settings, reducer = self._settings, self._settings.reducer
+        groups = self._pool.fits(0)
+        self._directions = tuple(DirectionEvidence.of(group, settings.diagnosis.both_ratio) for group in groups)
+        if not groups:
+            still = all(np.ptp(segment.values) == 0.0 for segment in self._pool.segments)
+            return _nothing((blocker(LimitationCode.SIGNAL_CONSTANT),)) if still else self._latest
+        fits = [group.fit for group in groups]
+        mean, covariance = _mean_amplitudes(fits)
         total = float(np.hypot(*mean))
         # Shares cos(angle) and sin(angle): their errors are those of the angle alone.
         across = np.array([mean[1], -mean[0]]) / total**2
         angle_std = float(np.sqrt(across @ covariance @ across))
-        cs, fs = mean / total
-        strongest = max(pairs, key=lambda pair: pair.explained)
-        phases = strongest.phasors / np.maximum(np.abs(strongest.phasors), 1e-300)
-        noise = float(np.mean([pair.noise**2 for pair in pairs]))
-        angles = np.concatenate([pooled.segment.angle for _, group, _ in estimates for pooled in group])
+        index = LinePair(*(mean / total).tolist())
+        strongest = max(fits, key=lambda fit: fit.explained)
+        cs, fs = np.array(index) * strongest.phasors / np.maximum(strongest.amplitudes, 1e-300)
+        angles = np.concatenate([segment.angle for group in groups for segment in group.segments])
         return Identification(
-            circular_spline=np.array([cs * phases[0]]),
-            flexspline=np.array([fs * phases[1]]),
-            index=LinePair(float(cs), float(fs)),
-            index_std=LinePair(float(fs) * angle_std, float(cs) * angle_std),
+            circular_spline=np.array([cs]),
+            flexspline=np.array([fs]),
+            index=index,
+            index_std=LinePair(index.flexspline * angle_std, index.circular_spline * angle_std),
             index_correlation=-1.0,
             relative=True,
-            lines=self._lines(groups, pairs),
+            lines=tuple(self._lines()),
             travel=float(np.ptp(angles)),
-            samples=sum(pair.rows for pair in pairs),
-            signal_to_noise=10.0 * float(np.log10(0.5 * total**2 / noise)),
-            misfit=float(np.mean([pair.floor for pair in pairs])),
-            limitations=_said(
-                False,
-                doubts_about(
-                    LinePair(float(cs), float(fs)),
-                    self._reducer,
-                    one_speed=one_speed(pooled.segment for pooled in self._pooled),
-                    too_fast=self._too_fast,
-                ),
-            )
-            + _said(True, self._other_teeth(groups, pairs))
-            + _said(True, reasons_against_naming(self._directions, self._reducer.output_orders, self._confidence)),
+            samples=sum(fit.rows for fit in fits),
+            signal_to_noise=10.0 * float(np.log10(0.5 * total**2 / np.mean([fit.noise**2 for fit in fits]))),
+            misfit=float(np.mean([fit.floor for fit in fits])),
+            limitations=(
+                *doubts_of_result(index, reducer, one_speed=one_speed(self._pool.segments), too_fast=self._too_fast),
+                *self._other_teeth(fits),
+                *disagreements(self._directions, reducer.output_orders, settings.diagnosis.confidence),
+            ),
             load_fluctuation=math.nan,
         )
 
-    def _lines(self, groups: list[tuple[str, list[_Pooled]]], first: list[PairEstimate]) -> tuple[LineEstimate, ...]:
-        """Amplitudes of every pair, root-mean-square over the directions; the first pair's estimates are there."""
-        lines = []
-        for number in range(len(self._harmonics)):
-            pairs = first if number == 0 else self._estimates(groups, number)
-            if pairs:
-                mean, covariance = _mean_amplitudes(pairs)
+    def _lines(self) -> Iterator[LineEstimate]:
+        """Amplitudes of every pair, root-mean-square over the directions."""
+        for number in range(self._settings.analysis.harmonics):
+            fits = [group.fit for group in self._pool.fits(number)]
+            if fits:
+                mean, covariance = _mean_amplitudes(fits)
                 std = np.sqrt(np.diag(covariance))
-                lines.append(
-                    LineEstimate(
-                        k=number + 1,
-                        amplitude=LinePair(*mean.tolist()),
-                        std=LinePair(*std.tolist()),
-                    )
-                )
-        return tuple(lines)
+                yield LineEstimate(k=number + 1, amplitude=LinePair(*mean.tolist()), std=LinePair(*std.tolist()))
 
-    def _estimates(self, groups: list[tuple[str, list[_Pooled]]], number: int) -> list[PairEstimate]:
-        found = (self._estimate_group(group, number) for _, group in groups)
-        return [estimate for estimate in found if estimate is not None]
-
-    def _estimate_group(self, group: list[_Pooled], number: int) -> PairEstimate | None:
-        grams = [gram for pooled in group if (gram := pooled.grams[number]) is not None]
-        return estimate_pair(grams, self._orders[number])
-
-    def _other_teeth(self, groups: list[tuple[str, list[_Pooled]]], own: list[PairEstimate]) -> tuple[str, ...]:
-        """Say which tooth numbers near those given fit better; empty if none do."""
-        given = sum(estimate.log_evidence for estimate in own)
+    def _other_teeth(self, own: Sequence[LineFit]) -> tuple[Limitation, ...]:
+        """Limit the result if tooth numbers near those given fit better."""
+        given = sum(fit.log_evidence for fit in own)
         rivals = []
-        for number, pair in enumerate(self._neighbours, start=len(self._harmonics)):
-            found = self._estimates(groups, number)
-            if len(found) == len(own):
-                rivals.append((sum(estimate.log_evidence for estimate in found) - given, pair, found))
+        for number, pair in enumerate(self._neighbours, start=self._settings.analysis.harmonics):
+            fits = [group.fit for group in self._pool.fits(number)]
+            if len(fits) == len(own):
+                rivals.append((sum(fit.log_evidence for fit in fits) - given, pair, fits))
         if not rivals:
             return ()
-        lead, pair, found = max(rivals, key=lambda rival: rival[0])
-        return other_teeth(lead, pair, [estimate.chance for estimate in found], self._reducer.output_orders)
+        lead, pair, fits = max(rivals, key=lambda rival: rival[0])
+        chances = [LinePair(*fit.chances.tolist()) for fit in fits]
+        return other_teeth(lead, pair, chances, self._settings.reducer.output_orders)
 
     @property
     def _too_fast(self) -> float:
         """Part of the motion that was too fast for the rate of the joint states."""
         return self._cutter.too_fast / self._cutter.turning if self._cutter.turning > 0.0 else 0.0
 
-    @staticmethod
-    def _nothing(reasons: tuple[str, ...]) -> Identification:
-        nothing = np.zeros(0, dtype=np.complex128)
-        return Identification(
-            circular_spline=nothing,
-            flexspline=nothing,
-            index=LinePair(0.0, 0.0),
-            index_std=LinePair(float("inf"), float("inf")),
-            relative=True,
-            limitations=_said(True, reasons),
-            load_fluctuation=math.nan,
-        )
+
+def _nothing(limitations: tuple[Limitation, ...]) -> Identification:
+    """Return a result that only says why there is none."""
+    nothing = np.zeros(0, dtype=np.complex128)
+    return Identification(
+        circular_spline=nothing,
+        flexspline=nothing,
+        index=LinePair(0.0, 0.0),
+        index_std=LinePair(float("inf"), float("inf")),
+        relative=True,
+        limitations=limitations,
+        load_fluctuation=math.nan,
+    )
 
 
-def _said(blocks: bool, texts: tuple[str, ...]) -> tuple[Limitation, ...]:
-    return tuple(Limitation(code=LimitationCode.OTHER, blocks=blocks, values={"text": text}) for text in texts)
-
-
-def _mean_amplitudes(pairs: list[PairEstimate]) -> tuple[FloatArray, FloatArray]:
+def _mean_amplitudes(fits: Sequence[LineFit]) -> tuple[FloatArray, FloatArray]:
     """Root-mean-square amplitudes (2,) over the directions, bias from noise removed, and their covariance (2, 2).
 
-    Where both lines are smaller than their bias, the bias stays: there is nothing else to tell them apart by.
+    Where both lines are smaller than their bias, the bias stays: nothing else distinguishes them.
     """
-    squares, covariance = np.zeros(2), np.zeros((2, 2))
-    for pair in pairs:
-        amplitude = np.array(pair.amplitude)
-        bias = np.diag(pair.covariance).reshape(2, 2).sum(axis=0)
-        squares += np.maximum(amplitude**2 - bias, 0.0) / len(pairs)
-        covariance += pair.amplitude_covariance / len(pairs)
+    squares = np.mean(
+        [np.maximum(f.amplitudes**2 - np.diag(f.covariance).reshape(2, 2).sum(axis=0), 0.0) for f in fits], axis=0
+    )
     if not squares.any():
-        squares = np.mean([np.square(pair.amplitude) for pair in pairs], axis=0)
-    mean = np.sqrt(squares)
-    return mean, covariance / len(pairs)
+        squares = np.mean([f.amplitudes**2 for f in fits], axis=0)
+    covariance = np.sum([f.amplitude_covariance for f in fits], axis=0) / len(fits) ** 2
+    return np.sqrt(squares), covariance

@@ -4,11 +4,10 @@ import itertools
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import f as f_distribution
 
 from ...arrays import FloatArray
-from ...orders.gram import PairOrders
-from ...orders.pair import solve_lines
+from ...orders.line_orders import LineOrders
+from ...orders.regression import solve
 from ...orders.spectrum import HIGHEST_ORDER, OrderSpectrum
 from ...reducer import LinePair, Reducer
 from .ranking import TOOTH_RANGE
@@ -150,32 +149,9 @@ def _chances(signal: OrderSpectrum, lines: tuple[float, ...], given: Reducer) ->
         nuisance = near if signal.turns > 0.5 else np.zeros(0)
     taken = np.concatenate([np.asarray(lines), nuisance])
     reference_orders = around[(np.abs(np.subtract.outer(around, taken)).min(axis=1) > 0.4) & (around > 2.0)]
-    orders = PairOrders(
-        lines=np.asarray(lines), nuisance=nuisance, reference_orders=reference_orders, trend=0.0, separation=2.0
-    )
-    fit = solve_lines(_arranged(signal, orders), orders)
-    if fit is None:
-        return (1.0,) * len(lines)
-    chances = []
-    for line in range(len(lines)):
-        index = [line, line + len(lines)]
-        parts = np.array([fit.phasors[line].real, fit.phasors[line].imag])
-        ratio = float(parts @ np.linalg.solve(fit.covariance[np.ix_(index, index)], parts)) / 2.0
-        chances.append(float(f_distribution.sf(ratio, 2, fit.freedom)))
-    return tuple(chances)
-
-
-def _arranged(signal: OrderSpectrum, orders: PairOrders) -> FloatArray:
-    """Inner products in the order that the fit of lines expects: each group's cosines, then its sines."""
-    groups = (orders.lines, orders.nuisance, orders.reference_orders)
-    every = np.concatenate(groups)
-    place, start = [], 0
-    for group in groups:
-        rows = np.arange(start, start + group.size)
-        place += [rows, rows + every.size]
-        start += group.size
-    index = np.concatenate([*place, [2 * every.size]])
-    return signal.products(every)[np.ix_(index, index)]
+    orders = LineOrders(lines=np.asarray(lines), nuisance=nuisance, reference_orders=reference_orders, spacing=2.0)
+    fit = solve(signal.products(orders.every), orders)
+    return (1.0,) * len(lines) if fit is None else tuple(fit.chances.tolist())
 
 
 def _given_lines(given: Reducer) -> FloatArray:

@@ -9,9 +9,9 @@ import numpy as np
 
 from ...acquisition.record import JointSamples, Record
 from ...errors import ParameterError
-from ...orders.gram import Gram, PairOrders
 from ...orders.joint_segment import JointSegment, JointSegmentCutter, one_speed, samples_of_records
-from ...orders.pair import CHANCE, line_chances
+from ...orders.line_orders import LineOrders
+from ...orders.regression import CHANCE, Products
 from ...orders.scan import OrderScan
 from ...reducer import WAVE_GENERATOR_LOBES, LinePair
 
@@ -142,7 +142,7 @@ def rank_tooth_pairs(
 
 
 def _rank(
-    pairs: Sequence[ToothPair], scan: OrderScan, parts: Sequence[Gram], segments: Sequence[JointSegment]
+    pairs: Sequence[ToothPair], scan: OrderScan, parts: Sequence[Products], segments: Sequence[JointSegment]
 ) -> ToothPairRanking:
     """Rank with the segments pooled in these parts."""
     ranked = sorted(
@@ -176,16 +176,16 @@ def _lines(pair: ToothPair, k: float) -> LinePair:
 
 def _surroundings(pair: ToothPair) -> tuple[int, int]:
     """Lowest and highest order that the fit of a pair looks at."""
-    lowest = PairOrders.around(_lines(pair, 0.5)).reference_orders.min()
-    return math.floor(lowest), math.ceil(PairOrders.around(_lines(pair, 1.0)).reference_orders.max())
+    lowest = LineOrders.of_pair(_lines(pair, 0.5)).reference_orders.min()
+    return math.floor(lowest), math.ceil(LineOrders.of_pair(_lines(pair, 1.0)).reference_orders.max())
 
 
-def _evidence(pair: ToothPair, scan: OrderScan, parts: Sequence[Gram]) -> ToothPairEvidence:
+def _evidence(pair: ToothPair, scan: OrderScan, parts: Sequence[Products]) -> ToothPairEvidence:
     """Sum the evidence for a pair's lines over parts and, once it shows itself, over its multiples in the range."""
     fits = [fit for part in parts if (fit := scan.solve(_around(_lines(pair, 1.0)), part)) is not None]
     if not fits:
         return ToothPairEvidence(teeth=pair, log_evidence=-math.inf, chance=1.0, lines_found=0)
-    chances = np.minimum(np.min([line_chances(fit) for fit in fits], axis=0) * 2 * len(fits), 1.0)
+    chances = np.minimum(np.min([fit.chances for fit in fits], axis=0) * 2 * len(fits), 1.0)
     found = int(np.count_nonzero(chances < CHANCE))
     total = sum(fit.log_evidence for fit in fits)
     multiples = [0.5, *range(2, scan.highest // pair.circular_spline + 1)] if found else []
@@ -195,7 +195,7 @@ def _evidence(pair: ToothPair, scan: OrderScan, parts: Sequence[Gram]) -> ToothP
     return ToothPairEvidence(teeth=pair, log_evidence=total, chance=float(chances.min()), lines_found=found)
 
 
-def _odds_as_pair(pair: ToothPair, scan: OrderScan, parts: Sequence[Gram]) -> float:
+def _odds_as_pair(pair: ToothPair, scan: OrderScan, parts: Sequence[Products]) -> float:
     """Logarithm of the odds for two lines against a single one, at either place or between: what travel must part."""
     single = np.zeros(len(_between(pair)))
     both = 0.0
@@ -213,9 +213,9 @@ def _between(pair: ToothPair) -> range:
     return range(pair.flexspline, pair.circular_spline + 1)
 
 
-def _around(lines: LinePair, only: float | None = None) -> PairOrders:
+def _around(lines: LinePair, only: float | None = None) -> LineOrders:
     """The pair with its reference orders, or a single line in its place."""
-    orders = PairOrders.around(lines)
+    orders = LineOrders.of_pair(lines)
     return orders if only is None else replace(orders, lines=np.array([float(only)]))
 
 

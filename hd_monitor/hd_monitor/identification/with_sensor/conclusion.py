@@ -7,7 +7,6 @@ import numpy as np
 
 from ...arrays import FloatArray
 from ...model.parameters import ParametricModel, StiffnessSeries, Torque
-from ...orders.line_amplitudes import measure_lines
 from ...reducer import Reducer
 from ..checks.limitations import FitSummary, limitations_of
 from ..checks.residual import LineResidual
@@ -19,6 +18,7 @@ from ..fit.unknowns import Unknowns
 from ..limitation import Limitation, LimitationCode, blocker
 from ..result import Identification
 from .context import Context
+from .line_amplitudes import measure_lines
 from .state import State
 
 WELL_KNOWN = 0.02

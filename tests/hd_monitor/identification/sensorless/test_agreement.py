@@ -1,11 +1,12 @@
 import pytest
 
+from hd_monitor.diagnosis.limitations import describe_limitation
 from hd_monitor.identification.sensorless.agreement import (
     BETTER_TEETH,
     DirectionEvidence,
+    disagreements,
     other_teeth,
     pooled_dominance,
-    reasons_against_naming,
 )
 from hd_monitor.reducer import LinePair
 
@@ -26,7 +27,7 @@ def direction(name="forward", dominance=(0.999, 0.001), chance=(1e-6, 0.5), riva
 
 
 def reasons(*directions, confidence=0.99):
-    return reasons_against_naming(directions, LINES, confidence)
+    return tuple(map(describe_limitation, disagreements(directions, LINES, confidence)))
 
 
 def test_a_spline_that_leads_in_both_directions_may_be_named():
@@ -42,7 +43,7 @@ def test_directions_that_disagree_name_nothing():
 
 def test_one_sure_direction_does_not_carry_an_unsure_one():
     (reason,) = reasons(direction(dominance=(1.0, 0.0)), direction("reverse", dominance=(0.8, 0.1)))
-    assert "not told apart surely enough" in reason
+    assert "not certain enough" in reason
 
 
 def test_all_directions_together_must_reach_the_confidence():
@@ -86,6 +87,7 @@ def test_a_stronger_line_elsewhere_asks_for_the_teeth():
     ids=["both lines", "little better", "one line"],
 )
 def test_other_teeth_are_suspected_for_both_lines_only(lead, chances, said):
-    reasons = other_teeth(lead, LinePair(200, 202), [LinePair(*pair) for pair in chances], LinePair(198, 200))
+    found = other_teeth(lead, LinePair(200, 202), [LinePair(*pair) for pair in chances], LinePair(198, 200))
+    reasons = list(map(describe_limitation, found))
     assert bool(reasons) is said
     assert all("200/202 teeth" in text and "198/200" in text for text in reasons)

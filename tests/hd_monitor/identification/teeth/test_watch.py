@@ -92,7 +92,7 @@ def test_products_are_those_of_the_lines():
     place = np.arange(TURNS * PER_TURN)
     angle = place / PER_TURN * math.tau
     waves = np.concatenate([np.cos(np.outer(orders, angle)), -np.sin(np.outer(orders, angle))])
-    products = found.products(orders)
+    products = found.products(orders).matrix
     np.testing.assert_allclose(products[:-1, :-1], (waves * found.counts) @ waves.T, atol=1e-6)
     np.testing.assert_allclose(products[:-1, -1], waves @ found.sums, atol=1e-6)
     assert products[-1, -1] == found.power

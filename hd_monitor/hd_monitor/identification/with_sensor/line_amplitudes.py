@@ -5,17 +5,17 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..identification.fit.noise import NoiseFloor
-from ..identification.result import LineEstimate
-from ..identification.segment.path import powers
-from ..identification.segment.segment import Segment
-from ..reducer import LinePair, Reducer
+from ...orders.regression import solve_normal
+from ...reducer import LinePair, Reducer
+from ..fit.noise import NoiseFloor
+from ..result import LineEstimate
+from ..segment.path import powers
+from ..segment.segment import Segment
 
 NEWEST = 4.5
 """Motion [s] that the amplitudes stand for."""
 
 _SIDE_TRAVEL = 0.55 * math.tau  # rad of travel from which the lines between and beside a pair are fitted too
-_DEPENDENT = 1e-8  # reciprocal condition below which the travel does not tell the lines
 
 
 def measure_lines(
@@ -57,13 +57,11 @@ def measure_lines(
     orders = [k * lowest_order + m * gap for k, m in places]
     base, side = (powers(np.exp(1j * order * angle), len(pairs) + 1) for order in (lowest_order, gap))
     phase = np.stack([base[k] * (side[m] if m >= 0 else side[-m].conj()) for k, m in places])
-    columns = np.concatenate([phase.real, -phase.imag])
-    gram = columns @ columns.T
-    squares = np.linalg.eigvalsh(gram)
-    if squares[0] < _DEPENDENT * squares[-1]:
+    columns = np.concatenate([phase.real, -phase.imag, values[None]])
+    fit = solve_normal(columns @ columns.T, np.arange(2 * len(orders)))
+    if fit is None:
         return ()
-    inverse = np.linalg.inv(gram)
-    solution = inverse @ (columns @ values)
+    solution, inverse = fit
     phasors = solution[: len(orders)] + 1j * solution[len(orders) :]
     own = inverse.diagonal()[: len(orders)]
     noise = floor.sample_std(np.maximum(np.asarray(orders) * mean_speed / math.tau, 1.0), newest[0].period)

@@ -1,0 +1,113 @@
+"""Segments of a joint's motion pooled: whitened by what they show of the background, and fitted by direction."""
+
+from collections import deque
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from ...orders.joint_segment import JointSegment
+from ...orders.line_orders import LineOrders
+from ...orders.regression import LineFit, Products, pool, solve
+from ...orders.segment_products import products_of_segment, residual_of_segment
+from ...orders.whitening import learn_whitening
+
+LEAST_SHARE = 0.1
+"""Part of the motion that a direction must have to be heard."""
+
+RELEARN = 3.0
+"""Growth of the data after which the background is learnt anew."""
+
+
+class GroupFit(NamedTuple):
+    """Lines fitted to a group of segments: a direction, or half of the time if there is one direction only."""
+
+    name: str
+    segments: tuple[JointSegment, ...]
+    fit: LineFit
+
+
+@dataclass(slots=True, eq=False)
+class _Pooled:
+    """A segment with its products for each set of orders; None where these are too fast for the sampling rate."""
+
+    segment: JointSegment
+    products: list[Products | None]
+
+
+class SegmentPool:
+    """Keeps the newest segments, and their products for several sets of orders.
+
+    Parameters
+    ----------
+    orders : sequence of LineOrders
+        The first set decides what counts as background, and which segments are heard.
+    memory : float
+        Motion [s] that is kept.
+    """
+
+    def __init__(self, orders: Sequence[LineOrders], memory: float) -> None:
+        self._orders = orders
+        self._memory = memory
+        self._pooled: deque[_Pooled] = deque()
+        self._coefficients = np.ones(1)
+        self._learnt = 0.0
+        self._seen = 0.0
+
+    @property
+    def segments(self) -> list[JointSegment]:
+        """Segments kept, the oldest first."""
+        return [pooled.segment for pooled in self._pooled]
+
+    def add(self, segment: JointSegment) -> None:
+        """Take a segment in; learn the background anew when the data have grown much."""
+        self._seen += segment.duration
+        self._pooled.append(_Pooled(segment, []))
+        held = sum(pooled.segment.duration for pooled in self._pooled)
+        while len(self._pooled) > 1 and held - self._pooled[0].segment.duration >= self._memory:
+            held -= self._pooled.popleft().segment.duration
+        due = RELEARN * self._learnt if self._learnt < self._memory else self._learnt + self._memory
+        outdated = [self._pooled[-1]]
+        if self._seen >= due:
+            self._learnt = self._seen
+            self._coefficients = learn_whitening([residual_of_segment(s, self._orders[0]) for s in self.segments])
+            outdated = list(self._pooled)
+        for pooled in outdated:
+            pooled.products = [
+                products_of_segment(pooled.segment, orders, self._coefficients) for orders in self._orders
+            ]
+
+    def fits(self, number: int) -> list[GroupFit]:
+        """Fit the lines of one set of orders, by its number, to every group of segments that determines them."""
+        fitted = []
+        for name, group in self._groups():
+            total = pool(products for pooled in group if (products := pooled.products[number]) is not None)
+            fit = solve(total, self._orders[number]) if total is not None else None
+            if fit is not None:
+                fitted.append(GroupFit(name, tuple(pooled.segment for pooled in group), fit))
+        return fitted
+
+    def _groups(self) -> Iterator[tuple[str, list[_Pooled]]]:
+        """Segments that are pooled coherently: by direction, or by time if there is one direction only."""
+        heard = [pooled for pooled in self._pooled if pooled.products[0] is not None]
+        total = _rows(heard)
+        by_direction = {
+            name: [pooled for pooled in heard if pooled.segment.direction == sign]
+            for name, sign in (("forward", 1), ("reverse", -1))
+        }
+        kept = {name: group for name, group in by_direction.items() if _rows(group) >= max(LEAST_SHARE * total, 1)}
+        if len(kept) == 2:
+            yield from kept.items()
+            return
+        for name, group in kept.items():
+            half = len(group) // 2
+            if not half:
+                yield name, group
+            else:
+                yield f"{name}, first half", group[:half]
+                yield f"{name}, second half", group[half:]
+
+
+def _rows(group: Sequence[_Pooled]) -> int:
+    return sum(pooled.segment.values.size for pooled in group)
