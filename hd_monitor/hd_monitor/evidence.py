@@ -1,13 +1,16 @@
 """What a joint's monitor has gathered: identification, RMS curve and the newest steady segment."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
 from .acquisition.record import Record
 from .acquisition.recorder import AssembledPeriod
 from .arrays import FloatArray
+from .identification.checks.motion import compare_motion
 from .identification.identifier import Identifier
+from .identification.limitation import Limitation
 from .identification.result import Identification
 from .identification.sensorless.identifier import SensorlessIdentifier
 from .orders.rms_curve import RmsAccumulator, RmsCurve
@@ -28,9 +31,11 @@ class Evidence:
     """
 
     def __init__(self, settings: JointSettings, identifier: Identifier | SensorlessIdentifier | None = None) -> None:
+        self._settings = settings
         self._rpm = settings.reducer.reduction * 60.0 / math.tau
         self._radius = settings.input.sensor_radius
         self._gravity = settings.vibration.gravity
+        self._contradiction: Limitation | None = None
         self._rms = RmsAccumulator(settings.analysis.rms_bin_width)
         self._steady = SteadySegment(settings.reducer, settings.analysis.minimum_speed)
         self._identifier = identifier or (
@@ -38,12 +43,24 @@ class Evidence:
         )
 
     def add(self, period: AssembledPeriod) -> None:
-        """Take in another period."""
+        """Take in another period; one whose positions and velocities contradict each other is left out."""
+        moves, contradiction = compare_motion(
+            period.joint_samples,
+            minimum_speed=self._settings.analysis.minimum_speed / self._rpm,
+            reduction=self._settings.reducer.reduction,
+        )
+        interrupted = self._contradiction is not None
+        if moves:
+            self._contradiction = contradiction
+        if self._contradiction is not None:
+            return
         if isinstance(self._identifier, SensorlessIdentifier):
             if len(period.joint_samples):
                 self._identifier.add(period.joint_samples)
             return
         for record in period.records:
+            if interrupted:
+                record, interrupted = replace(record, continues=False), False
             self._rms.add(record.speed * self._rpm, self._tangential(record.acceleration))
             self._steady.add(record)
             self._identifier.add(record)
@@ -53,7 +70,12 @@ class Evidence:
     @property
     def identification(self) -> Identification | None:
         """What has been identified; None as long as nothing could be."""
-        return self._identifier.estimate()
+        found = self._identifier.estimate()
+        if self._contradiction is None:
+            return found
+        if found is None:
+            return Identification.none((self._contradiction,), relative=self._settings.sensorless)
+        return found.limited(self._contradiction)
 
     @property
     def rms_curve(self) -> RmsCurve:

@@ -6,6 +6,7 @@ from tests.hd_monitor.monitored import BLOCK, EPOCH, SETTINGS, Recording, latest
 
 from hd_monitor.diagnosis.verdict import Component, FaultCode, Level
 from hd_monitor.monitor import Monitor
+from hd_monitor.settings import JointSettings
 
 
 @pytest.fixture(scope="module")
@@ -160,3 +161,53 @@ def test_positions_in_degrees_are_suspected(recording: Recording) -> None:
     verdict = latest(monitor).verdict
     assert verdict.component is Component.UNDETERMINED
     assert "in rad" in verdict.reason
+
+
+@pytest.mark.parametrize(
+    ("factor", "words"),
+    [
+        (2.0, "the positions change 0.5 times as much as the velocities say"),
+        (-1.0, "velocities of the opposite sign"),
+        (0.0, "The velocities in joint_states are zero while the positions move"),
+        (180.0 / np.pi, "velocities in deg/s"),
+    ],
+)
+def test_velocities_that_contradict_the_positions_are_named_as_the_cause(
+    recording: Recording, factor: float, words: str
+) -> None:
+    monitor = Monitor("joint", SETTINGS)
+    monitor.add_motion(recording.joint_stamps, recording.position, factor * recording.velocity, recording.effort)
+    for block in recording.blocks():
+        monitor.add_block(block)
+    monitor.finish()
+    verdict = latest(monitor).verdict
+    assert (verdict.component, verdict.level) == (Component.UNDETERMINED, Level.WARN)
+    assert words in verdict.reason
+
+
+def test_positions_that_jump_about_are_named_as_the_cause(recording: Recording) -> None:
+    monitor = Monitor("joint", SETTINGS)
+    noise = np.random.default_rng(4).standard_normal(recording.position.size)
+    monitor.add_motion(recording.joint_stamps, noise, recording.velocity, recording.effort)
+    for block in recording.blocks():
+        monitor.add_block(block)
+    monitor.finish()
+    assert "Positions and velocities in joint_states contradict each other" in latest(monitor).verdict.reason
+
+
+def test_missing_velocities_are_taken_from_the_positions(recording: Recording) -> None:
+    monitor = Monitor("joint", SETTINGS)
+    monitor.add_motion(
+        recording.joint_stamps, recording.position, np.full(recording.position.size, np.nan), recording.effort
+    )
+    for block in recording.blocks():
+        monitor.add_block(block)
+    monitor.finish()
+    assert latest(monitor).verdict.component is Component.FLEXSPLINE
+
+
+def test_contradictory_joint_states_are_named_without_a_sensor_too(recording: Recording) -> None:
+    monitor = Monitor("joint", JointSettings.from_mapping({"input.source": "joint_effort"}))
+    monitor.add_motion(recording.joint_stamps, recording.position, -recording.velocity, recording.effort)
+    monitor.finish()
+    assert "velocities of the opposite sign" in latest(monitor).verdict.reason

@@ -1,1 +1,38 @@
-"""From records to the stiffness indexes of the two splines, with their covariance."""
+"""From records to the stiffness indexes of the two splines, with their covariance and what limits them.
+
+The flow, with a vibration sensor::
+
+    records ─ segment/ ─► Segment: contiguous motion with its vibration, torque and integration grid
+            ─ fit/ ─────► Fit: values of the unknowns, their covariance, and why the steps ended
+            ─ checks/ ──► what is left at the lines, what the motion covers, what contradicts what was given
+            ─ teeth/ ───► whether other tooth numbers explain the motion better
+            ─ with_sensor/ ► State, replaced by ``Estimator.update(state, records)``; it holds the result
+
+Without a sensor ``sensorless/`` pools segments of joint states by direction; both end in an `Identification`, which
+holds numbers and codes only. The sentences for people are in :mod:`hd_monitor.diagnosis`.
+
+Vocabulary
+----------
+line
+    Vibration at a fixed order (cycles per output revolution); the k-th pair is k times the two splines' tooth numbers.
+segment
+    Contiguous motion on a uniform grid, the unit of evidence.
+unknowns
+    β phasors of both splines, load phasors, and ln fn, ln ζ, ln torque, clock delay and inertia as one vector.
+prediction
+    The model simulated along the measured motion; its linearisation adds the derivative by every unknown.
+information, score
+    Curvature and slope of the log likelihood in the unknowns: sums over segments. Faded information stays Gaussian.
+score test
+    What the data alone ask of an unknown that is not fitted, in standard deviations.
+noise floor
+    Power of the residual over frequency, which weights every row of a fit.
+residual, overdispersion
+    What is left at the lines' own orders, and by how much segments contradict each other: both widen the intervals.
+reference orders
+    Orders beside a line at which nothing turns: what a fit finds there is the noise floor of that line.
+multistart
+    The fit from several starts on the newest segments, since the cost has local minima in load, delay and resonance.
+limitation
+    A reason to doubt a result or not to name a part on it: a code and its numbers.
+"""

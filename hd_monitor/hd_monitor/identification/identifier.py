@@ -1,15 +1,11 @@
 """Identification of the stiffness indexes from the vibration and the motion it belongs to."""
 
 import math
-from collections.abc import Iterable, Sequence
-from dataclasses import replace
 
 import numpy as np
 
 from ..acquisition.record import Record
 from ..settings import JointSettings
-from .checks.motion import motion_contradiction
-from .limitation import Limitation
 from .result import Identification
 from .segment.assembly import SegmentAssembler
 from .with_sensor.estimator import Estimator
@@ -50,8 +46,7 @@ class Identifier:
     """
 
     def __init__(self, settings: JointSettings, *, sparing: bool = True) -> None:
-        self._reduction = settings.reducer.reduction
-        self._minimum_speed = settings.analysis.minimum_speed * math.tau / 60.0 / self._reduction
+        self._minimum_speed = settings.analysis.minimum_speed * math.tau / 60.0 / settings.reducer.reduction
         self._assembler = SegmentAssembler(self._minimum_speed)
         self._estimator = Estimator(settings)
         self._state = self._estimator.initial()
@@ -70,14 +65,7 @@ class Identifier:
         if self._passed:
             self._state = self._estimator.aged(self._state, self._passed)
             self._passed = 0.0
-        if contradiction := self._contradiction(record):
-            self._update(self._assembler.flush())
-            self._state = replace(self._state, unusable=contradiction)
-            return
-        self._update(self._assembler.add(record, self._segment_length))
-
-    def _update(self, segments: Iterable[Sequence[Record]]) -> None:
-        for records in segments:
+        for records in self._assembler.add(record, self._segment_length):
             self._state = self._estimator.update(self._state, records)
             if self._is_cruising:
                 period = min(CRUISE_PERIOD * self._sureness, LONGEST_PERIOD)
@@ -90,25 +78,13 @@ class Identifier:
             return result
         if result is None:
             return Identification.none((unusable,), relative=False)
-        # What was known before stands; that it gets no younger must be said
-        return replace(result, limitations=(*result.limitations, replace(unusable, blocks=False)))
+        return result.limited(unusable)
 
     def finish(self) -> Identification | None:
         """Use what is still waiting to become a longer segment, and return the estimate on everything."""
         for records in self._assembler.flush():
             self._state = self._estimator.update(self._state, records)
         return self.estimate()
-
-    def _contradiction(self, record: Record) -> Limitation | None:
-        if not (np.isfinite(record.angle).all() and np.isfinite(record.speed).all()):
-            return None
-        return motion_contradiction(
-            record.times,
-            record.angle,
-            record.speed,
-            minimum_speed=self._minimum_speed,
-            reduction=self._reduction,
-        )
 
     @property
     def _sureness(self) -> float:

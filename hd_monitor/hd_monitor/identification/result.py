@@ -2,7 +2,7 @@
 
 import functools
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
@@ -103,6 +103,10 @@ class Identification:
             load_fluctuation=math.nan,
             limitations=limitations,
         )
+
+    def limited(self, limitation: Limitation) -> Self:
+        """Return the result with one more limitation, which weakens it at most: what was known before stands."""
+        return replace(self, limitations=(*self.limitations, replace(limitation, blocks=False)))
 
     @property
     def doubts(self) -> tuple[Limitation, ...]:

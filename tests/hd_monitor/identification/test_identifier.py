@@ -153,40 +153,14 @@ def test_a_standing_joint_gives_nothing():
     assert identify(still, truth.settings()) is None
 
 
-DEGREES, RPM = np.degrees(1.0), 60.0 / (2.0 * np.pi)
-
-
 @pytest.mark.parametrize(
     ("spoil", "code"),
     [
-        (lambda r: replace(r, speed=2.0 * r.speed), LimitationCode.VELOCITY_SCALE),
-        (lambda r: replace(r, speed=-r.speed), LimitationCode.VELOCITY_UNIT),
-        (lambda r: replace(r, speed=np.zeros(len(r))), LimitationCode.VELOCITY_ZERO),
-        (lambda r: replace(r, speed=DEGREES * r.speed), LimitationCode.VELOCITY_UNIT),
-        (lambda r: replace(r, speed=RPM * r.speed), LimitationCode.VELOCITY_UNIT),
-        (lambda r: replace(r, angle=DEGREES * r.angle), LimitationCode.VELOCITY_UNIT),
-        (lambda r: replace(r, angle=np.zeros(len(r))), LimitationCode.POSITION_STILL),
-        (
-            lambda r: replace(r, angle=np.random.default_rng(0).standard_normal(len(r))),
-            LimitationCode.MOTION_INCONSISTENT,
-        ),
         (lambda r: replace(r, acceleration=np.zeros(len(r))), LimitationCode.VIBRATION_CONSTANT),
         (lambda r: replace(r, speed=1e5 * r.speed, angle=1e5 * r.angle), LimitationCode.SEGMENT_UNUSABLE),
         (lambda r: replace(r, torque=np.full(len(r), 1e12)), LimitationCode.TORQUE_ABSURD),
     ],
-    ids=[
-        "doubled",
-        "reversed",
-        "zero velocity",
-        "deg/s",
-        "rpm",
-        "degrees",
-        "still",
-        "noise",
-        "zero vibration",
-        "speed",
-        "torque",
-    ],
+    ids=["zero vibration", "speed", "torque"],
 )
 @pytest.mark.parametrize("motion", ["dwell", "strokes"])
 def test_the_true_fault_of_absurd_input_is_named_and_no_part(spoil, code, motion):
@@ -216,16 +190,17 @@ def test_a_fault_that_comes_later_is_said_beside_what_is_known():
     identifier = Identifier(truth.settings())
     for record in records:
         identifier.add(record)
-    identifier.add(replace(records[-1], speed=-records[-1].speed))
+    for record in records[:4]:
+        identifier.add(replace(record, acceleration=np.zeros(len(record)), continues=False))
     result = identifier.estimate()
     assert result is not None
     assert_right(result, truth)
-    assert result.doubts[-1].code is LimitationCode.VELOCITY_UNIT
+    assert result.doubts[-1].code is LimitationCode.VIBRATION_CONSTANT
     for record in records[:4]:
         identifier.add(replace(record, continues=False))
     result = identifier.finish()
     assert result is not None
-    assert LimitationCode.VELOCITY_UNIT not in [doubt.code for doubt in result.doubts]
+    assert LimitationCode.VIBRATION_CONSTANT not in [doubt.code for doubt in result.doubts]
 
 
 def test_the_same_records_give_the_same_result():

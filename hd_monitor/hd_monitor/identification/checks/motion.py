@@ -1,10 +1,11 @@
 """Whether positions and velocities of a joint describe the same motion, and if not, which mistake would explain it."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
-from ...arrays import FloatArray
+from ...acquisition.record import JointSamples
 from ..limitation import Limitation, LimitationCode, blocker
 
 WINDOW = 0.05
@@ -15,42 +16,57 @@ SLIP = 0.4
 
 _FOLLOWS = 0.9  # correlation from which one is a multiple of the other
 _STILL = 0.02  # size of one over the other below which it does not move
+_WRAPPED = 1.5 * math.pi  # rad between two positions from which the joint reports ±π alternately
 _CLOSE = 1.1  # factor within which a ratio is that of a known mistake
 
 
-def motion_contradiction(
-    times: FloatArray, angle: FloatArray, speed: FloatArray, *, minimum_speed: float, reduction: float
-) -> Limitation | None:
-    """Return how positions and velocities contradict each other; None if they do not, or if the joint stands.
+class MotionAgreement(NamedTuple):
+    """Whether a joint moves and, if so, how its positions and velocities contradict each other, if they do."""
+
+    moves: bool
+    contradiction: Limitation | None
+
+
+def compare_motion(samples: JointSamples, *, minimum_speed: float, reduction: float) -> MotionAgreement:
+    """Compare the positions of joint states with their velocities; those without either are left out.
 
     Parameters
     ----------
-    times : ndarray, shape (samples,)
-        Rising [s].
-    angle, speed : ndarray, shape (samples,)
-        Output angle [rad], unwrapped, and output speed [rad/s], both finite.
+    samples : JointSamples
     minimum_speed : float
         Output speed [rad/s] below which the joint counts as standing.
     reduction : float
         Motor revolutions per output revolution.
     """
+    known = np.isfinite(samples.angle) & np.isfinite(samples.speed)
+    times, speed = samples.times[known], samples.speed[known]
+    angle = np.unwrap(samples.angle[known], discont=_WRAPPED)
     if times.size < 3 or times[-1] - times[0] < 2.0 * WINDOW:
-        return None
+        return MotionAgreement(False, None)
     first = np.flatnonzero(np.diff(np.floor((times - times[0]) / WINDOW), prepend=-1.0))
     travelled = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(times))])
     moved, said = np.diff(angle[first]), np.diff(travelled[first])
     size_moved, size_said = float(np.linalg.norm(moved)), float(np.linalg.norm(said))
     larger = max(size_moved, size_said)
-    if larger < minimum_speed * WINDOW * math.sqrt(moved.size) or float(np.linalg.norm(moved - said)) <= SLIP * larger:
-        return None
-    if abs(float(moved @ said)) <= _FOLLOWS * size_moved * size_said:
-        if size_said < _STILL * size_moved:
-            return blocker(LimitationCode.VELOCITY_ZERO, moved_deg=math.degrees(float(np.abs(moved).sum())))
-        if size_moved < _STILL * size_said:
-            return blocker(LimitationCode.POSITION_STILL, velocity_deg_s=math.degrees(float(np.abs(speed).max())))
-        slip = 100.0 * float(np.linalg.norm(moved - said)) / larger
-        return blocker(LimitationCode.MOTION_INCONSISTENT, difference_percent=slip)
-    ratio = float(moved @ said) / size_said**2
+    if larger < minimum_speed * WINDOW * math.sqrt(moved.size):
+        return MotionAgreement(False, None)
+    difference = float(np.linalg.norm(moved - said)) / larger
+    if difference <= SLIP:
+        return MotionAgreement(True, None)
+    product = float(moved @ said)
+    if abs(product) > _FOLLOWS * size_moved * size_said:
+        return MotionAgreement(True, _scaled(product / size_said**2, reduction))
+    if size_said < _STILL * size_moved:
+        found = blocker(LimitationCode.VELOCITY_ZERO, moved_deg=math.degrees(float(np.abs(moved).sum())))
+    elif size_moved < _STILL * size_said:
+        found = blocker(LimitationCode.POSITION_STILL, velocity_deg_s=math.degrees(float(np.abs(speed).max())))
+    else:
+        found = blocker(LimitationCode.MOTION_INCONSISTENT, difference_percent=100.0 * difference)
+    return MotionAgreement(True, found)
+
+
+def _scaled(ratio: float, reduction: float) -> Limitation:
+    """Return the contradiction of positions that are a multiple of what the velocities say."""
     for mistake, factor in _mistakes(reduction).items():
         if 1.0 / _CLOSE < ratio / factor < _CLOSE:
             return blocker(LimitationCode.VELOCITY_UNIT, ratio=ratio, mistake=mistake)

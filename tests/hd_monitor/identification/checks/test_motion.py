@@ -5,16 +5,24 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from hd_monitor.acquisition.record import JointSamples
 from hd_monitor.diagnosis.limitations import describe_limitation
-from hd_monitor.identification.checks.motion import motion_contradiction
+from hd_monitor.identification.checks.motion import compare_motion
 from hd_monitor.identification.limitation import LimitationCode
 
 TIMES = np.arange(1000) / 1000.0
 REDUCTION = 80.0
 
 
+def agreement(angle, speed, times=TIMES):
+    samples = JointSamples(times=times, angle=angle, speed=speed, effort=np.zeros(times.size))
+    return compare_motion(samples, minimum_speed=0.01, reduction=REDUCTION)
+
+
 def contradiction(angle, speed, times=TIMES):
-    return motion_contradiction(times, angle, speed, minimum_speed=0.01, reduction=REDUCTION)
+    found = agreement(angle, speed, times)
+    assert found.moves
+    return found.contradiction
 
 
 @given(
@@ -29,7 +37,7 @@ def test_true_motion_with_noisy_velocities_is_accepted(amplitude, rate, phase, p
     times = np.arange(0.0, 1.0, period)
     speed = amplitude * rate * np.cos(rate * times + phase)
     noisy = speed + noise * amplitude * rate * np.random.default_rng(seed).standard_normal(times.size)
-    assert contradiction(amplitude * np.sin(rate * times + phase), noisy, times) is None
+    assert agreement(amplitude * np.sin(rate * times + phase), noisy, times).contradiction is None
 
 
 def test_velocities_filtered_late_are_accepted():
@@ -39,7 +47,19 @@ def test_velocities_filtered_late_are_accepted():
 
 def test_a_standing_joint_contradicts_nothing():
     rng = np.random.default_rng(1)
-    assert contradiction(1e-5 * rng.standard_normal(TIMES.size), 1e-3 * rng.standard_normal(TIMES.size)) is None
+    still = agreement(1e-5 * rng.standard_normal(TIMES.size), 1e-3 * rng.standard_normal(TIMES.size))
+    assert still == (False, None)
+
+
+def test_a_joint_that_turns_past_the_end_of_its_range_contradicts_nothing():
+    angle = 3.0 * TIMES + 2.0
+    assert contradiction(np.mod(angle + np.pi, 2.0 * np.pi) - np.pi, np.full(TIMES.size, 3.0)) is None
+
+
+def test_messages_without_velocity_are_left_out():
+    speed = np.where(np.arange(TIMES.size) % 2, np.nan, 0.5)
+    assert contradiction(0.5 * TIMES, speed) is None
+    assert agreement(0.5 * TIMES, np.full(TIMES.size, np.nan)) == (False, None)
 
 
 @pytest.mark.parametrize(
