@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..arrays import BoolArray, FloatArray, IntArray
+from ..arrays import BoolArray, FloatArray, IntArray, runs_of
 from ..settings import JointSettings
 from ..sources import Quantity
 from .clock import recover_clock
@@ -15,11 +15,17 @@ from .intake import Period
 from .motion import MotionTrack, TorqueTrack, Track, even_stamps
 from .quality import Quality
 from .record import JointSamples, Record
-from .screening import screen
+from .screening import Screened, screen
 from .stream import Samples
 
 _NS = 1e-9
 _REPLACED = ("rate", "last_fault")  # of the quality: not counters
+_FAULTS = {
+    "not_finite": "are not finite",
+    "clipped": "are clipped",
+    "stuck": "did not change while they should",
+    "spikes": "are spikes",
+}
 _SHORTEST_RECORD = 8  # samples
 _STANDING = 1e-3  # rad of output travel in a period, below which a constant signal does not mean a stuck sensor
 
@@ -157,23 +163,20 @@ class Recorder:
         grid = self._grid
         clock = recover_clock(_seconds(samples.stamps, epoch), grid.period if grid else None)
         if clock is None:
-            self.count(
-                last_fault="the stamps of the vibration samples do not advance", duplicates=samples.stamps.size - 1
-            )
+            fault = "the stamps of the vibration samples do not advance"
+            self.count(last_fault=fault, duplicates=samples.stamps.size - 1)
             return (), np.empty(0)
         screened = screen(samples.values[clock.order, 0], full_scale=self._full_scale, turning=turning)
-        self._count_screened(screened.not_finite, screened.clipped, screened.stuck, screened.spikes)
+        self._count_screened(screened)
         self.count(samples=clock.order.size, duplicates=clock.duplicates, rate=1.0 / clock.period)
         number, start = clock.number, clock.start
         missing = 0
         if grid is not None:
             missing = round((clock.start - grid.due) / clock.period)
-            if missing * clock.period > self._max_gap or missing < 0:
-                self._joined = False
+            if missing:
                 self._hole(max(missing, 1))
-                missing = 0
-            elif missing:
-                self._hole(missing)
+            if missing * clock.period > self._max_gap or missing < 0:
+                self._joined, missing = False, 0
         self._grid = _Grid(clock.start + clock.period * (int(number[-1]) + 1), clock.period)
         bounds = [0, number.size]
         if int(number[-1]) >= number.size:
@@ -205,17 +208,13 @@ class Recorder:
         if self._has_sensor:  # what lies in a hole of its signal has no torque that could be mixed with a measured one
             torque = self._torque_track.at(times)
             known &= np.isfinite(torque)
-        if known.all():
-            spans = [(0, values.size)]
-        else:
-            edges = np.flatnonzero(np.diff(np.concatenate([[False], known, [False]]).astype(np.int8)))
-            spans = list(zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True))
+        spans = [(0, values.size)] if known.all() else runs_of(known)
         torque = self._torque(torque)
-        records = []
+        records, joined = [], self._joined
+        self._joined = False
         for first, last in spans:
-            if first:
-                self._joined = False
-            if last - first >= _SHORTEST_RECORD or self._joined:
+            continues = joined and first == 0
+            if last - first >= _SHORTEST_RECORD or continues:
                 part = slice(first, last)
                 records.append(
                     Record(
@@ -225,14 +224,10 @@ class Recorder:
                         angle=angle[part],
                         speed=speed[part],
                         torque=torque[part],
-                        continues=self._joined,
+                        continues=continues,
                     )
                 )
                 self._joined = last == values.size
-            else:
-                self._joined = False
-        if not spans or spans[-1][1] != values.size:
-            self._joined = False
         return records
 
     def _torque(self, measured: FloatArray) -> FloatArray:
@@ -250,18 +245,12 @@ class Recorder:
     def _hole(self, lost: int) -> None:
         self.count(gaps=1, lost=lost)
 
-    def _count_screened(self, not_finite: int, clipped: int, stuck: int, spikes: int) -> None:
-        if not (not_finite or clipped or stuck or spikes):
-            return
-        self.count(not_finite=not_finite, clipped=clipped, stuck=stuck, spikes=spikes)
-        names = {
-            "are not finite": not_finite,
-            "are clipped": clipped,
-            "did not change while they should": stuck,
-            "are spikes": spikes,
-        }
-        worst = max(names, key=lambda name: names[name])
-        self.count(last_fault=f"{names[worst]} vibration samples of the last period {worst} and were left out")
+    def _count_screened(self, screened: Screened) -> None:
+        counts = {name: getattr(screened, name) for name in _FAULTS}
+        worst = max(counts, key=counts.__getitem__)
+        if counts[worst]:
+            fault = f"{counts[worst]} vibration samples of the last period {_FAULTS[worst]} and were left out"
+            self.count(**counts, last_fault=fault)
 
 
 def _sorted(samples: Samples) -> Samples:

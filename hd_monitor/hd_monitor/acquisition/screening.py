@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from ..arrays import BoolArray, FloatArray
+from ..arrays import BoolArray, FloatArray, runs_of
 from ..robust import PER_MEDIAN, robust_std
 
 Places = npt.NDArray[np.intp]
@@ -65,10 +65,9 @@ def screen(values: FloatArray, *, full_scale: float = 0.0, turning: bool = True)
 
 def _flat_runs(values: FloatArray, equal: BoolArray, *, tops: bool) -> tuple[Places, Places]:
     """Places of flat tops, with `tops`, and of stuck values."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], equal, [False]]).astype(np.int8)))
     flat, stuck = np.zeros(values.size, dtype=np.bool_), np.zeros(values.size, dtype=np.bool_)
     high, low = np.nanmax(values), np.nanmin(values)
-    for first, last in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
+    for first, last in runs_of(equal):
         run = slice(first, last + 1)
         length = last + 1 - first
         if length >= _STUCK_RUN:
