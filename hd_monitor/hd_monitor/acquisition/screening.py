@@ -16,6 +16,8 @@ _AROUND = 12  # samples on either side of a spike that show the level there
 _LONGEST_SPIKE = 3  # samples in a row; more are a disturbance, not a spike
 _STUCK_RUN = 32  # equal samples in a row: no sensor at rest is that quiet
 _CLIPPED_RUN = 3  # equal samples in a row at the extreme: a flat top
+_TRIALS = np.array([(n, first) for n in range(1, _LONGEST_SPIKE + 1) for first in range(-n, 2)])
+"""Number of samples of a trial spike, and its first one relative to the place of the largest curvature."""
 _NOWHERE = np.empty(0, dtype=np.intp)
 
 
@@ -78,8 +80,8 @@ def _flat_runs(values: FloatArray, equal: BoolArray, *, tops: bool) -> tuple[Pla
 
 
 def _curvature(values: FloatArray) -> FloatArray:
-    """Magnitude of the deviation of each inner sample from the mean of its neighbours, shape (N - 2,)."""
-    return np.abs(values[1:-1] - 0.5 * (values[:-2] + values[2:]))
+    """Magnitude of the deviation of each inner sample from the mean of its neighbours, along the last axis."""
+    return np.abs(values[..., 1:-1] - 0.5 * (values[..., :-2] + values[..., 2:]))
 
 
 def _spikes(values: FloatArray) -> Places:
@@ -117,22 +119,28 @@ def _spike_near(values: FloatArray, place: int, limit: float) -> Places:
     low, high = max(0, place - 2 * _AROUND), min(values.size, place + 2 * _AROUND + 1)
     window = values[low:high]
     raw = _curvature(window)
-    curvature, finite = np.nan_to_num(raw), np.isfinite(window)
+    curvature = np.nan_to_num(raw)
     near = slice(max(0, place - low - 1 - _LONGEST_SPIKE), place - low + _LONGEST_SPIKE)
     top = near.start + int(np.argmax(curvature[near]))
     level = np.concatenate([raw[max(0, top - _AROUND) : max(0, top - 2)], raw[top + 3 : top + _AROUND + 1]])
     level = level[np.isfinite(level)]
     if curvature[top] <= max(limit, _SPIKE * robust_std(level) if level.size else 0.0):
         return _NOWHERE
-    index, best, bridged, most = np.arange(window.size), _NOWHERE, window, 0.0
-    for count in range(1, _LONGEST_SPIKE + 1):
-        for first in range(top + 1 - count, top + 3):
-            chosen = (index >= first) & (index < first + count) & finite
-            kept = finite & ~chosen
-            trial = np.where(chosen, np.interp(index, index[kept], window[kept]), window)
-            # Squares, so that another spike nearby counts alike in every trial; a longer spike must be worth its length
-            gain = float((curvature**2 - np.nan_to_num(_curvature(trial)) ** 2).sum()) / math.sqrt(count)
-            if gain > most:
-                best, bridged, most = low + index[chosen], trial, gain
-    values[low:high] = bridged
-    return best
+    # Trials, each in a row: which samples, of one to three in a row, leave the least curvature once bridged by a line?
+    count, first = _TRIALS[:, 0], top + 1 + _TRIALS[:, 1]
+    inside = (first >= 0) & (first + count <= window.size)
+    count, first = count[inside, None], first[inside, None]
+    padded = np.concatenate([[math.nan], window, [math.nan]])
+    left, right = padded[first], padded[first + count + 1]
+    left, right = np.where(np.isnan(left), right, left), np.where(np.isnan(right), left, right)
+    part = (np.arange(window.size) - first + 1) / (count + 1.0)
+    chosen = (part > 0.0) & (part < 1.0) & np.isfinite(window)
+    bridged = np.where(chosen, left + part * (right - left), window)
+    # Squares, so that another spike nearby counts alike in every trial; a longer spike must be worth its length
+    gain = (curvature**2 - np.nan_to_num(_curvature(bridged)) ** 2).sum(axis=1) / np.sqrt(count[:, 0])
+    gain[np.isnan(left[:, 0])] = 0.0
+    best = int(np.argmax(gain))
+    if gain[best] <= 0.0:
+        return _NOWHERE
+    values[low:high] = bridged[best]
+    return low + np.flatnonzero(chosen[best])
