@@ -9,7 +9,7 @@ import functools
 import math
 import operator
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -30,34 +30,45 @@ NEAR = 6.0
 WORST_CONDITION = 1e8
 """Condition number of the normal equations above which they do not determine the lines."""
 
+_SAME = 1e-6  # cycles per revolution
+
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Products:
-    """Inner products of columns, the last of which is the signal: all that need be kept of data.
+    """Inner products of the columns of lines and of the signal: all that need be kept of data.
 
     Attributes
     ----------
+    orders : ndarray, shape (orders,)
+        Cycles per revolution.
     matrix : ndarray, shape (2 * orders + 1, 2 * orders + 1)
-        Of the columns of :func:`line_columns` and the signal, each over `noise`.
+        Of their :func:`line_columns` and, last, of the signal; each over `noise`.
     rows : int
         Samples behind it.
     noise : float
         Standard deviation of their noise, in the signal's unit.
     """
 
+    orders: FloatArray
     matrix: FloatArray
     rows: int
     noise: float = 1.0
 
     def __add__(self, other: "Products") -> "Products":
-        """Return the products of both data together."""
+        """Return the products of both data together, coherent in the absolute angle."""
         rows = self.rows + other.rows
         weight = self.rows / self.noise**2 + other.rows / other.noise**2
-        return Products(matrix=self.matrix + other.matrix, rows=rows, noise=math.sqrt(rows / weight))
+        noise = math.sqrt(rows / weight)
+        return Products(orders=self.orders, matrix=self.matrix + other.matrix, rows=rows, noise=noise)
+
+    def places(self, orders: FloatArray) -> IntArray:
+        """Where some orders, shape (N,), are among those held; -1 for those that are not."""
+        distance = np.abs(np.subtract.outer(orders, self.orders))
+        return np.where(distance.min(axis=1) < _SAME, distance.argmin(axis=1), -1)
 
 
 def pool(parts: Iterable[Products]) -> Products | None:
-    """Add products up, coherently in the absolute angle; None if there are none."""
+    """Add up products for the same orders; None if there are none."""
     parts = iter(parts)
     first = next(parts, None)
     return None if first is None else functools.reduce(operator.add, parts, first)
@@ -205,8 +216,8 @@ def solve_normal(
     return inverse @ matrix[fitted, -1], inverse
 
 
-def solve(products: Products, orders: LineOrders) -> LineFit | None:
-    """Fit the lines of `orders` to the products of their columns; None if these do not determine them.
+def solve(products: Products, wanted: LineOrders) -> LineFit | None:
+    """Fit lines, with those of their reference orders that the products hold; None if these do not determine them.
 
     Notes
     -----
@@ -218,7 +229,13 @@ def solve(products: Products, orders: LineOrders) -> LineFit | None:
     Two lines that are ``d`` resolutions apart (a resolution is one cycle over the travel) inflate each other's variance
     by ``1 / (1 - sinc² d)``: known orders cost that little; unknown frequencies would cost up to a thousand times more.
     """
-    matrix, lines = products.matrix, orders.lines.size
+    held = products.places(wanted.reference_orders) >= 0
+    orders = replace(wanted, reference_orders=wanted.reference_orders[held])
+    place = products.places(orders.every)
+    if (place < 0).any():
+        return None
+    index = np.concatenate([place, place + products.orders.size, [2 * products.orders.size]])
+    matrix, lines = products.matrix[np.ix_(index, index)], orders.lines.size
     fitted, beside = orders.fitted_columns, orders.reference_columns
     normal = solve_normal(matrix, fitted)
     if normal is None:

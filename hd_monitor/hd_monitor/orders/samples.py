@@ -5,7 +5,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import FloatArray
 from ..errors import ParameterError
 from ..robust import clip
 from .line_orders import LineOrders
@@ -64,7 +64,7 @@ def fit_lines(
     if travel > 0.0:
         wanted = LineOrders.around(lines, math.tau / travel)
         columns = np.column_stack([line_columns(angle[used], wanted.every), values[used]])
-        products = products_of_columns(columns, slow[used], wanted.fitted_columns)
+        products = products_of_columns(columns, slow[used], wanted)
         fit = solve(products, wanted) if products is not None else None
     if fit is None:
         raise ParameterError(
@@ -86,21 +86,22 @@ def _check(values: FloatArray, angle: FloatArray, orders: FloatArray, trend: Flo
         raise ParameterError(f"trend {trend.shape} does not fit {values.size} values: one row a sample")
 
 
-def products_of_columns(columns: FloatArray, trend: FloatArray, fitted: IntArray) -> Products | None:
+def products_of_columns(columns: FloatArray, trend: FloatArray, orders: LineOrders) -> Products | None:
     """Take a trend off columns, spikes off the last one, which is the signal, and multiply them.
 
     Parameters
     ----------
-    columns : ndarray, shape (rows, columns + 1)
+    columns : ndarray, shape (rows, 2 * orders + 1)
     trend : ndarray, shape (rows, terms)
-    fitted : ndarray of int
-        Columns whose fit tells what is a spike.
+    orders : LineOrders
+        What the columns are; what its lines do not explain and sticks out is a spike.
 
     Returns
     -------
     Products or None
         None if nothing is left of the signal, or there are too few rows.
     """
+    fitted = orders.fitted_columns
     freedom = len(columns) - trend.shape[1] - fitted.size
     if freedom < 1:
         return None
@@ -111,7 +112,7 @@ def products_of_columns(columns: FloatArray, trend: FloatArray, fitted: IntArray
         return None
     columns[:, -1] = fit + residual
     columns /= noise
-    return Products(matrix=columns.T @ columns, rows=len(columns), noise=noise)
+    return Products(orders=orders.every, matrix=columns.T @ columns, rows=len(columns), noise=noise)
 
 
 def project(trend: FloatArray, columns: FloatArray) -> FloatArray:

@@ -2,15 +2,13 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..robust import clip
 from .joint_segment import HIGHEST_SHARE, LOWEST_FREQUENCY, JointSegment
-from .line_orders import LineOrders
-from .regression import LineFit, Products, pool, solve
+from .regression import Products, pool
 from .samples import project
 from .segment_products import trend_columns
 from .whitening import learn_whitening, settled, whiten
@@ -92,16 +90,6 @@ class OrderScan:
         columns = project(whiten(self._coefficients, trend)[good], whiten(self._coefficients, columns)[good])
         columns[:, -1] = clip(columns[:, -1], CLIP)
         noise = math.sqrt(float(np.mean(columns[:, -1] ** 2)))
-        return Products(matrix=columns.T @ columns / noise**2, rows=len(columns), noise=noise) if noise > 0.0 else None
-
-    def solve(self, orders: LineOrders, part: Products) -> LineFit | None:
-        """Fit lines with their reference orders out of a sum; None where the range does not hold or determine them."""
-        first, last = self._orders[[0, -1]]
-        beside = orders.reference_orders
-        orders = replace(orders, reference_orders=beside[(beside >= first) & (beside <= last)])
-        every = orders.every
-        if every.min() < first or every.max() > last or (every != np.rint(every)).any():
+        if not noise > 0.0:
             return None
-        place = np.rint(every).astype(np.int64) - first
-        index = np.concatenate([place, place + self._orders.size, [2 * self._orders.size]])
-        return solve(replace(part, matrix=part.matrix[np.ix_(index, index)]), orders)
+        return Products(orders=orders, matrix=columns.T @ columns / noise**2, rows=len(columns), noise=noise)

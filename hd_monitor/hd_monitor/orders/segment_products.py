@@ -19,9 +19,7 @@ def products_of_segment(segment: JointSegment, orders: LineOrders, coefficients:
     if np.count_nonzero(good) < 2 * (trend.shape[1] + orders.fitted_columns.size):
         return None
     columns = np.column_stack([segment.columns(orders.every), segment.values - segment.values.mean()])
-    return products_of_columns(
-        whiten(coefficients, columns)[good], whiten(coefficients, trend)[good], orders.fitted_columns
-    )
+    return products_of_columns(whiten(coefficients, columns)[good], whiten(coefficients, trend)[good], orders)
 
 
 def residual_of_segment(segment: JointSegment, orders: LineOrders) -> FloatArray:

@@ -90,7 +90,7 @@ class OrderSpectrum:
         column = np.concatenate([own.real, -own.imag])
         lines = np.block([[cosines, mixed], [mixed.T, sines]])
         matrix = np.block([[lines, column[:, None]], [column[None, :], np.array([[self.power]])]])
-        return Products(matrix=matrix, rows=int(self.counts.sum()))
+        return Products(orders=orders, matrix=matrix, rows=int(self.counts.sum()))
 
 
 def with_segment(

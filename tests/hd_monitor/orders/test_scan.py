@@ -4,6 +4,7 @@ import pytest
 from hd_monitor.acquisition.record import JointSamples
 from hd_monitor.orders.joint_segment import JointSegmentCutter
 from hd_monitor.orders.line_orders import LineOrders
+from hd_monitor.orders.regression import solve
 from hd_monitor.orders.scan import PARTS, OrderScan
 from hd_monitor.reducer import LinePair
 
@@ -26,10 +27,10 @@ def test_any_lines_of_the_range_can_be_fitted_from_the_sums():
     sums = scan.by_direction()
     assert len(sums) == 2
     for part in sums:
-        fit = scan.solve(LineOrders.of_pair(LinePair(200.0, 202.0)), part)
+        fit = solve(part, LineOrders.of_pair(LinePair(200.0, 202.0)))
         assert fit is not None
         np.testing.assert_allclose(fit.phasors, [0.2 * np.exp(1j), 0.1], atol=0.02)
-        beside = scan.solve(LineOrders.of_pair(LinePair(186.0, 188.0)), part)
+        beside = solve(part, LineOrders.of_pair(LinePair(186.0, 188.0)))
         assert beside is not None
         assert np.abs(beside.phasors).max() < 0.05
         assert fit.log_evidence > beside.log_evidence + 20.0
@@ -58,7 +59,7 @@ def test_parts_cover_a_revolution_and_add_up_to_the_whole():
 @pytest.mark.parametrize("pair", [LinePair(100.0, 102.0), LinePair(230.0, 232.0), LinePair(200.5, 202.5)])
 def test_lines_outside_the_range_or_between_its_orders_are_not_fitted(pair):
     scan = OrderScan(segments(), ORDERS)
-    assert scan.solve(LineOrders.of_pair(pair), scan.by_direction()[0]) is None
+    assert solve(scan.by_direction()[0], LineOrders.of_pair(pair)) is None
 
 
 def test_no_segments_make_no_sums():

@@ -11,7 +11,7 @@ from ...acquisition.record import JointSamples, Record
 from ...errors import ParameterError
 from ...orders.joint_segment import JointSegment, JointSegmentCutter, one_speed, samples_of_records
 from ...orders.line_orders import LineOrders
-from ...orders.regression import CHANCE, Products
+from ...orders.regression import CHANCE, Products, solve
 from ...orders.scan import OrderScan
 from ...reducer import WAVE_GENERATOR_LOBES, LinePair
 
@@ -182,7 +182,7 @@ def _surroundings(pair: ToothPair) -> tuple[int, int]:
 
 def _evidence(pair: ToothPair, scan: OrderScan, parts: Sequence[Products]) -> ToothPairEvidence:
     """Sum the evidence for a pair's lines over parts and, once it shows itself, over its multiples in the range."""
-    fits = [fit for part in parts if (fit := scan.solve(_around(_lines(pair, 1.0)), part)) is not None]
+    fits = [fit for part in parts if (fit := solve(part, _around(_lines(pair, 1.0)))) is not None]
     if not fits:
         return ToothPairEvidence(teeth=pair, log_evidence=-math.inf, chance=1.0, lines_found=0)
     chances = np.minimum(np.min([fit.chances for fit in fits], axis=0) * 2 * len(fits), 1.0)
@@ -190,7 +190,7 @@ def _evidence(pair: ToothPair, scan: OrderScan, parts: Sequence[Products]) -> To
     total = sum(fit.log_evidence for fit in fits)
     multiples = [0.5, *range(2, scan.highest // pair.circular_spline + 1)] if found else []
     for k in multiples:
-        more = (scan.solve(_around(_lines(pair, k)), part) for part in parts)
+        more = (solve(part, _around(_lines(pair, k))) for part in parts)
         total += sum(fit.log_evidence for fit in more if fit is not None)
     return ToothPairEvidence(teeth=pair, log_evidence=total, chance=float(chances.min()), lines_found=found)
 
@@ -200,10 +200,10 @@ def _odds_as_pair(pair: ToothPair, scan: OrderScan, parts: Sequence[Products]) -
     single = np.zeros(len(_between(pair)))
     both = 0.0
     for part in parts:
-        fit = scan.solve(_around(_lines(pair, 1.0)), part)
+        fit = solve(part, _around(_lines(pair, 1.0)))
         both += fit.log_evidence if fit is not None else 0.0
         for number, order in enumerate(_between(pair)):
-            alone = scan.solve(_around(_lines(pair, 1.0), only=order), part)
+            alone = solve(part, _around(_lines(pair, 1.0), only=order))
             single[number] += alone.log_evidence if alone is not None else 0.0
     return both - max(float(single.max()), 0.0)
 
