@@ -103,10 +103,11 @@ def test_a_node_that_dies_is_named(start_module: Start, which: int) -> None:
 
 
 def test_a_node_that_refuses_to_start_is_quoted(start_module: Start) -> None:
-    demo = start_module(COMMAND, "demo", "--monitor", "input.source:=imu", "--monitor", "input.sensor_radius:=0.0")
+    unstable = ("programme:=fixed", "fixed.speed:=3300.0", "dynamics.damping_ratio:=0.001")
+    demo = start_module(COMMAND, "demo", *(word for parameter in unstable for word in ("--sim", parameter)))
     assert demo.wait() == 1
-    assert "ended with status 2" in demo.output
-    assert "give the distance of the IMU from the joint's axis" in demo.output
+    assert "hd_sim_node ended with status 2" in demo.output
+    assert "parametrically unstable at 3300 rpm" in demo.output
 
 
 @pytest.mark.parametrize(
@@ -118,6 +119,7 @@ def test_a_node_that_refuses_to_start_is_quoted(start_module: Start) -> None:
         (("--sim", "sensor.noize:=1.0"), "did you mean sensor.noise"),
         (("--sim", "sensor.noise"), "write NAME:=VALUE"),
         (("--monitor", "reducer.mount:=ceiling"), "choose one of"),
+        (("--monitor", "input.source:=imu", "--monitor", "input.sensor_radius:=0.0"), "give the distance of the IMU"),
         (("--seconds", "-1"), "--seconds = -1 is not usable"),
     ],
 )
