@@ -8,7 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from hd_monitor.cdr import decode_joint_states
 from hd_monitor.contract import Block, pack_block
+from hd_monitor.sources import JOINT_STATES
 
 MONITOR, RIG = "hd_monitor.ros", "hd_sim_node"
 OK, WARN, ERROR = 0, 1, 2
@@ -180,3 +182,30 @@ class Feeder:
 def feeder(peer: Any) -> Feeder:
     """Give a feeder of hand-made messages."""
     return Feeder(peer)
+
+
+class TorqueSensor:
+    """Publishes a wrench 3 ms after every joint state that it hears: -10 N·m about x."""
+
+    DELAY = 3_000_000  # ns
+
+    def __init__(self, peer: Any) -> None:
+        from geometry_msgs.msg import WrenchStamped
+
+        from hd_monitor.ros.subscriptions import DrainedSubscription
+
+        self._states = DrainedSubscription(
+            peer.node, JOINT_STATES.topic, JOINT_STATES.type, depth=5000, reliability="reliable"
+        )
+        self._wrenches = peer.publisher(WrenchStamped, "wrench", match=False)
+
+    def measure(self) -> None:
+        """Publish what is due."""
+        from geometry_msgs.msg import WrenchStamped
+
+        groups, _ = decode_joint_states(self._states.drain())
+        for stamp in np.concatenate([np.empty(0, np.int64), *(group.stamps for group in groups)]).tolist():
+            message = WrenchStamped()
+            message.header.stamp.sec, message.header.stamp.nanosec = divmod(stamp + self.DELAY, NANOSECONDS)
+            message.wrench.torque.x, message.wrench.force.z = -10.0, 250.0
+            self._wrenches.publish(message)

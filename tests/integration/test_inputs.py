@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from .conftest import OK, QUICK, Bench
+from .conftest import ERROR, OK, QUICK, Bench, TorqueSensor
 from .test_verdicts import settled
 
 pytestmark = pytest.mark.ros
@@ -29,6 +29,22 @@ def test_imu(bench: Bench) -> None:
     )
     status = bench.until_status(settled, "a settled verdict")
     assert status.component == "flexspline"
+
+
+def test_force_torque_sensor(bench: Bench, peer: Any) -> None:
+    sensor = TorqueSensor(peer)
+    bench.monitor("load.source:=wrench", "load.axis:=-x", "load.torque:=30.0")
+    bench.rig("defect:=flexspline", "joint_states.effort:=none", *QUICK)
+
+    def named() -> bool:
+        sensor.measure()
+        return any(settled(status) for status in bench.statuses)
+
+    bench.until(named, "a settled verdict")
+    status = next(status for status in bench.statuses if settled(status))
+    assert (status.component, status.level) == ("flexspline", ERROR)
+    assert status.values["torque source"] == "wrench"
+    assert status.number("flexspline index (%)") == pytest.approx(10.3, abs=0.5)
 
 
 def test_namespace(bench: Bench, peer: Any) -> None:

@@ -13,9 +13,10 @@ from hd_monitor.offline.bag import Bag
 from hd_monitor.offline.parameters import load_parameters
 from hd_monitor.offline.plan import Request, plan
 from hd_monitor.offline.replay import replay
-from hd_monitor.sources import INPUT_SOURCES, JOINT_STATES, Source
+from hd_monitor.settings import split_joints
+from hd_monitor.sources import Source
 
-from .conftest import MONITOR, RIG, Bench, arguments_of
+from .conftest import MONITOR, RIG, Bench, TorqueSensor, arguments_of
 
 pytestmark = pytest.mark.ros
 
@@ -24,6 +25,7 @@ PARAMETERS = """
   ros__parameters:
     reducer: {serial: HD-0042}
     input: {source: SOURCE}
+    load: {source: LOAD, axis: -x}
     diagnosis: {warn_index: 4e-2, error_index: 0.09, confirm_count: 3, confirm_window: 4}
 """
 RIG_PARAMETERS = (
@@ -81,7 +83,10 @@ class Recorder:
         return path
 
 
-@pytest.mark.parametrize(("source", "publish"), [("block", "block"), ("accel_stamped", "samples")])
+@pytest.mark.parametrize(
+    ("source", "publish", "load"),
+    [("block", "block", "auto"), ("accel_stamped", "samples", "auto"), ("block", "block", "wrench")],
+)
 def test_every_live_status_is_replayed_value_by_value(
     bench: Bench,
     peer: Any,
@@ -89,21 +94,27 @@ def test_every_live_status_is_replayed_value_by_value(
     tmp_path: Path,
     source: str,
     publish: str,
+    load: str,
 ) -> None:
     parameters = tmp_path / "parameters.yaml"
-    parameters.write_text(PARAMETERS.replace("SOURCE", source))
-    recorder = Recorder(peer, [JOINT_STATES, INPUT_SOURCES[source]])
+    parameters.write_text(PARAMETERS.replace("SOURCE", source).replace("LOAD", load))
+    sensor = TorqueSensor(peer)
+    sources = list(split_joints(load_parameters(parameters))["joint"].sources.values())
+    recorder = Recorder(peer, sources)
     start_module(MONITOR, "--ros-args", "--params-file", str(parameters))
     rig = start_module(RIG, *arguments_of((*RIG_PARAMETERS, f"publish:={publish}", "time_scale:=2.0")))
 
     # A publisher that has found a subscriber may not yet have been found by it. What it sends in that time comes later,
     # on one topic perhaps seconds later than on the other; the node then rightly gives up waiting, of which a recording
-    # made elsewhere knows nothing. So the rig starts when monitor and recorder know both publishers.
+    # made elsewhere knows nothing. So the rig starts when monitor and recorder know all publishers.
     bench.until(recorder.matched, "the rig's publishers")
-    bench.until_status(lambda s: s.message.count("but sends nothing") == 2, "a monitor that knows both publishers")
+    bench.until_status(
+        lambda s: s.message.count("but sends nothing") == len(sources), "a monitor that knows all publishers"
+    )
     recorder.open_gate()
 
     def ended() -> bool:
+        sensor.measure()
         recorder.drain()
         return "has ended" in rig.output
 
@@ -123,6 +134,7 @@ def test_every_live_status_is_replayed_value_by_value(
         said = [status_of(s.assessment, s.plan.joint, s.plan.settings) for s in replay(bag, plans)]
     replayed = [(status.level, status.message, status.hardware_id, dict(status.values)) for status in said]
 
+    assert live[-1][3]["torque source"] == ("wrench" if load == "wrench" else "effort")
     assert len({status[3]["samples"] for status in live}) >= 3, "too few different statuses to compare"
     # The node shows the newest assessment once a second, so that several may pass between two statuses: each shown
     # one must be among the replayed, in the same order.

@@ -34,6 +34,22 @@ def test_sensorless_joint_lacks_joint_states_only(bench: Bench) -> None:
     assert "torsional_acceleration" not in status.message
 
 
+def test_a_torque_sensor_that_sends_nothing_is_missed_alone(bench: Bench, feeder: Feeder) -> None:
+    bench.monitor("input.timeout:=0.5", "load.source:=wrench", "load.topic:=ft_sensor/wrench")
+    bench.until(feeder.matched, "the monitor's subscriptions")
+
+    def missed() -> bool:
+        feeder.send(1)
+        return any(
+            lost(status)
+            and "nothing publishes /ft_sensor/wrench (geometry_msgs/msg/WrenchStamped)" in status.message
+            and "joint states" not in status.message
+            for status in bench.statuses
+        )
+
+    bench.until(missed, "a status that misses the torque only")
+
+
 def test_vibration_without_joint_states(bench: Bench, feeder: Feeder) -> None:
     bench.monitor("input.timeout:=0.5")
     bench.until(feeder.matched, "the monitor's subscriptions")
