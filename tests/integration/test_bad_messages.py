@@ -44,7 +44,7 @@ def test_wrong_layout(listening: Bench, feeder: Feeder) -> None:
 
     listening.until(reported, "a report of the wrong layout")
     status = next(s for s in listening.statuses if s.fault_code == "HD_INPUT_INVALID")
-    assert "labelled 'vibration'; the contract asks for 'torsional_acceleration'" in status.message
+    assert "labelled 'vibration'; the contract requires 'torsional_acceleration'" in status.message
     assert status.number("rejected messages") >= 1
     assert_recovers(listening, feeder)
 
