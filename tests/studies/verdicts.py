@@ -28,9 +28,10 @@ import numpy as np
 from hd_monitor.acquisition.record import Record
 from hd_monitor.diagnosis.judge import Judge
 from hd_monitor.diagnosis.verdict import Component
-from hd_monitor.errors import HdMonitorError
 from hd_monitor.identification.identifier import Identifier
-from hd_monitor.orders.samples import fit_lines
+from hd_monitor.orders.line_orders import LineOrders
+from hd_monitor.orders.regression import line_columns, solve
+from hd_monitor.orders.segment_products import products_of_columns
 from hd_monitor.orders.zoom import zoom_spectrum
 from hd_monitor.reducer import LinePair
 
@@ -94,9 +95,16 @@ def least_squares(case: Case, records: Sequence[Record]) -> Component:
     hertz = float(np.mean(np.abs(speed))) / math.tau
     orders = [k * order for k in (1, 2, 3) for order in reducer.output_orders]
     orders = [order for order in orders if order * hertz < 0.45 / records[0].period]
-    try:
-        fit = fit_lines(acceleration, angle, orders)
-    except HdMonitorError:
+    if not orders:
+        return Component.UNDETERMINED
+    used = np.isfinite(acceleration)
+    angle, acceleration = angle[used], acceleration[used]
+    wanted = LineOrders.around(orders, math.tau / np.ptp(angle))
+    columns = np.column_stack([line_columns(angle, wanted.every), acceleration])
+    trend = np.column_stack([np.ones(angle.size), np.arange(float(angle.size))])
+    products = products_of_columns(columns, trend, wanted)
+    fit = solve(products, wanted) if products is not None else None
+    if fit is None:
         return Component.UNDETERMINED
     frequencies = np.asarray(orders) * hertz
     wind_up = case.model.torque.mean / dynamics.stiffness

@@ -48,8 +48,6 @@ class JointSegment:
     ----------
     direction : int
         1 or -1, the sign of the output speed.
-    times : ndarray, shape (rows,)
-        [s].
     angle : ndarray, shape (rows,)
         Output angle [rad].
     speed : ndarray, shape (rows,)
@@ -67,7 +65,6 @@ class JointSegment:
     """
 
     direction: int
-    times: FloatArray
     angle: FloatArray
     speed: FloatArray
     values: FloatArray
@@ -211,29 +208,18 @@ def _segment(rows: FloatArray, good: BoolArray, period: float, averaged: int) ->
     place = np.flatnonzero(good)
     apart = np.diff(rows[place, 0]) > GAP * period
     starts = np.concatenate([[True], apart | (np.diff(place) > 1)])
-    if averaged > 1:
-        run = np.cumsum(starts) - 1
-        within = np.arange(place.size) - np.flatnonzero(starts)[run]
-        group = np.flatnonzero(within % averaged == 0)
-        sizes = np.diff(np.append(group, place.size))
-        whole = group[sizes == averaged]
-        if whole.size < SHORTEST:
-            return None
-        index = place[whole[:, None] + np.arange(averaged)]
-        values, times, angle = (rows[index, column].mean(axis=1) for column in (3, 0, 1))
-        pace = rows[index, 2].mean(axis=1)
-        starts = np.concatenate([[True], np.diff(whole) != averaged]) | starts[whole]
-    else:
-        values, times, angle, pace = rows[place, 3], rows[place, 0], rows[place, 1], rows[place, 2]
-    if values.size < SHORTEST:
+    within = np.arange(place.size) - np.flatnonzero(starts)[np.cumsum(starts) - 1]
+    group = np.flatnonzero(within % averaged == 0)
+    whole = group[np.diff(np.append(group, place.size)) == averaged]
+    if whole.size < SHORTEST:
         return None
+    _, angle, pace, values = rows[place[whole[:, None] + np.arange(averaged)]].mean(axis=1).T
     return JointSegment(
         direction=1 if float(pace.mean()) > 0.0 else -1,
-        times=times,
         angle=angle,
         speed=np.abs(pace),
         values=values,
-        starts=starts,
+        starts=np.concatenate([[True], np.diff(whole) != averaged]) | starts[whole],
         step=pace * period,
         averaged=averaged,
         rate=1.0 / (period * averaged),

@@ -19,3 +19,9 @@ def orthonormal(columns: npt.NDArray[np.floating[Any]]) -> FloatArray:
     squares, directions = np.linalg.eigh(scaled.T @ scaled)
     kept = squares > _DEPENDENT * squares[-1]
     return np.asarray(scaled @ (directions[:, kept] / np.sqrt(squares[kept])))
+
+
+def project(trend: FloatArray, columns: FloatArray) -> FloatArray:
+    """Columns, shape (samples, columns), less what the trend's columns explain of them."""
+    directions = orthonormal(trend)
+    return np.asarray(columns - directions @ (directions.T @ columns))

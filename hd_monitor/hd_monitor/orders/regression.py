@@ -125,11 +125,6 @@ class LineFit:
         return np.sqrt(np.diag(self.amplitude_covariance))
 
     @property
-    def noise_std(self) -> float:
-        """Standard deviation of one sample of white noise as strong as the floor around the lines."""
-        return self.noise * math.sqrt(self.floor)
-
-    @property
     def explained(self) -> float:
         """Power that the lines explain, in units of the floor: twice their number by chance."""
         parts = np.concatenate([self.phasors.real, self.phasors.imag])
@@ -145,14 +140,13 @@ class LineFit:
     @property
     def chances(self) -> FloatArray:
         """Probability, for each line, that noise alone makes it this large (F test against the reference orders)."""
-        ratios = [self.chi_square(line) / 2.0 for line in range(self.phasors.size)]
+        lines = self.phasors.size
+        ratios = []
+        for line, phasor in enumerate(self.phasors.tolist()):
+            own = self.covariance[np.ix_([line, line + lines], [line, line + lines])]
+            parts = np.array([phasor.real, phasor.imag])
+            ratios.append(float(parts @ np.linalg.solve(own, parts)) / 2.0)
         return np.asarray(f_distribution.sf(ratios, 2, self.freedom))
-
-    def chi_square(self, line: int) -> float:
-        """Squared size of a line in units of its covariance: twice an F with 2 and `freedom` if there is none."""
-        index = [line, line + self.phasors.size]
-        parts = np.array([self.phasors[line].real, self.phasors[line].imag])
-        return float(parts @ np.linalg.solve(self.covariance[np.ix_(index, index)], parts))
 
     @property
     def rival(self) -> float | None:

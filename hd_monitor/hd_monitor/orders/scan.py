@@ -8,8 +8,8 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..robust import clip
 from .joint_segment import HIGHEST_SHARE, LOWEST_FREQUENCY, JointSegment
+from .orthonormal import project
 from .regression import Products, pool
-from .samples import project
 from .segment_products import trend_columns
 from .whitening import learn_whitening, settled, whiten
 

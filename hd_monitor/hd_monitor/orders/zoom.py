@@ -11,14 +11,14 @@ from ..contract import MAX_ZOOM_BINS
 from ..errors import ParameterError
 from ..reducer import LinePair
 
-WIDTHS = {"boxcar": 1.0, "hann": 2.0}
-"""Separation of two lines that a window shows as two, in cycles per record (half of its main lobe)."""
+WIDTH = 2.0
+"""Separation of two lines that a Hann window shows as two, in cycles per record (half of its main lobe)."""
 
 PAIRS_SHOWN = 5
 """Width of the span in line separations: the pair, its combination lines on either side, and half as much again."""
 
 LOBES_SHOWN = 8
-"""Width of the span in resolutions where the record is too short to part the lines: a whole lobe and around it."""
+"""Width of the span in resolutions where the record is too short to separate the lines: a whole lobe and around it."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -40,7 +40,7 @@ class ZoomSpectrum:
     resolution : float
         Separation [Hz] from which two equal lines show as two peaks.
     resolved : bool
-        True if the pair is that far apart. If not, the two peaks tell nothing about the two splines.
+        True if the pair is that far apart. If not, the two peaks say nothing about the two splines.
     """
 
     frequencies: FloatArray
@@ -53,7 +53,7 @@ class ZoomSpectrum:
 
 
 class Zoom:
-    """A zoom spectrum's precomputed configuration: window and chirp-z transform, called on samples.
+    """A zoom spectrum's precomputed configuration: Hann window and chirp-z transform, called on samples.
 
     Parameters
     ----------
@@ -65,8 +65,6 @@ class Zoom:
         First and last frequency [Hz], both shown.
     bins : int
         Number of frequencies.
-    window : str
-        ``'hann'`` or ``'boxcar'``.
 
     Raises
     ------
@@ -82,11 +80,7 @@ class Zoom:
     (3.0, 50.0)
     """
 
-    def __init__(
-        self, count: int, period: float, first: float, last: float, bins: int = MAX_ZOOM_BINS, window: str = "hann"
-    ) -> None:
-        if window not in WIDTHS:
-            raise ParameterError(f"window = {window!r} is unknown; choose 'hann' or 'boxcar'")
+    def __init__(self, count: int, period: float, first: float, last: float, bins: int = MAX_ZOOM_BINS) -> None:
         if count < 4 or bins < 2:
             raise ParameterError(f"a zoom of {count} samples to {bins} bins shows nothing; give at least 4 and 2")
         if not 0.0 <= first < last <= 0.5 / period:
@@ -96,8 +90,8 @@ class Zoom:
             )
         self.count, self.period, self.bins = count, period, bins
         self.frequencies: FloatArray = np.linspace(first, last, bins)
-        self.resolution = WIDTHS[window] / (count * period)
-        self._window: FloatArray = np.asarray(get_window(window, count), dtype=np.float64)
+        self.resolution = WIDTH / (count * period)
+        self._window: FloatArray = np.asarray(get_window("hann", count), dtype=np.float64)
         self._transform = ZoomFFT(count, [first, last], m=bins, fs=1.0 / period, endpoint=True)
 
     def __call__(self, samples: npt.ArrayLike) -> FloatArray:
@@ -125,7 +119,6 @@ def zoom_spectrum(
     around: LinePair,
     k: int,
     bins: int = MAX_ZOOM_BINS,
-    window: str = "hann",
 ) -> ZoomSpectrum:
     """Amplitude spectrum around a line pair, its two combination lines included.
 
@@ -136,7 +129,7 @@ def zoom_spectrum(
     ----------
     samples : array_like, shape (samples,)
         Vibration on an even time grid, any unit; NaN where missing. The speed must be steady: at a changing speed the
-        lines smear, and regression on the angle (`line_regression`) takes over.
+        lines smear, and regression on the angle takes over.
     period : float
         Sample period [s].
     around : LinePair
@@ -145,8 +138,6 @@ def zoom_spectrum(
         Number of the pair, for the result.
     bins : int
         At most this many; at least 10. Fewer where the span would leave the band from 0 to half the sampling rate.
-    window : str
-        ``'hann'`` or ``'boxcar'``.
 
     Returns
     -------
@@ -155,25 +146,23 @@ def zoom_spectrum(
     Raises
     ------
     ParameterError
-        If the pair lies outside the signal's band, is no pair, or the samples are no record.
+        If the pair lies outside the signal's band, is not a pair, or the samples are not a record.
     """
     values = np.asarray(samples, dtype=np.float64)
     if values.ndim != 1 or values.size < 4:
-        raise ParameterError(f"samples of shape {values.shape} are no record; give at least 4 samples in one dimension")
+        raise ParameterError(f"samples of shape {values.shape} are not a record; give 4 or more in one dimension")
     if not (np.isfinite(period) and period > 0.0):
-        raise ParameterError(f"period = {period!r} s is no sample period; give the time between two samples")
-    if window not in WIDTHS:
-        raise ParameterError(f"window = {window!r} is unknown; choose 'hann' or 'boxcar'")
+        raise ParameterError(f"period = {period!r} s is not a sample period; give the time between two samples")
     if bins < 2 * PAIRS_SHOWN:
         raise ParameterError(f"bins = {bins} cannot show a pair and its neighbours; give at least {2 * PAIRS_SHOWN}")
     left, right = around
     separation, nyquist = right - left, 0.5 / period
     if not (0.0 < left < right < nyquist):
         raise ParameterError(
-            f"the lines {left:g} and {right:g} Hz are no rising pair between 0 and {nyquist:g} Hz, half the sampling "
-            "rate; choose a lower pair or a faster input"
+            f"the lines {left:g} and {right:g} Hz are not a rising pair between 0 and {nyquist:g} Hz, half the "
+            "sampling rate; choose a lower pair or a faster input"
         )
-    resolution = WIDTHS[window] / (values.size * period)
+    resolution = WIDTH / (values.size * period)
     # Bins per separation: as fine as the five separations allow, coarser where one lobe would not fit into the picture.
     finest = bins // PAIRS_SHOWN
     per_separation = int(np.clip(np.floor(bins * separation / (LOBES_SHOWN * resolution)), 1, finest))
@@ -182,7 +171,7 @@ def zoom_spectrum(
     lowest = max(-before, -int(np.floor(left / step)))
     highest = min(bins - 1 - before, max(per_separation, int(np.floor((nyquist - left) / step))))
     first, last = max(left + lowest * step, 0.0), min(left + highest * step, nyquist)
-    zoom = Zoom(values.size, period, first, last, highest - lowest + 1, window)
+    zoom = Zoom(values.size, period, first, last, highest - lowest + 1)
     amplitude = zoom(values)
     at_left = -lowest
     return ZoomSpectrum(

@@ -8,8 +8,8 @@ from scipy import stats
 from hd_monitor.acquisition.record import JointSamples
 from hd_monitor.orders.joint_segment import JointSegmentCutter
 from hd_monitor.orders.line_orders import LineOrders
+from hd_monitor.orders.orthonormal import project
 from hd_monitor.orders.regression import pool, solve
-from hd_monitor.orders.samples import project
 from hd_monitor.orders.segment_products import products_of_segment, residual_of_segment, trend_columns
 from hd_monitor.orders.whitening import learn_whitening
 from hd_monitor.reducer import LinePair
@@ -146,7 +146,6 @@ def test_too_little_to_go_on_is_no_fit():
     few = slice(0, 24)
     brief = replace(
         brief,
-        times=brief.times[few],
         angle=brief.angle[few],
         speed=brief.speed[few],
         values=brief.values[few],

@@ -23,16 +23,15 @@ def sine(count, frequency, amplitude=1.0, phase=0.0):
     st.integers(1, 4),
     st.integers(0, 200),
     st.integers(2, 50),
-    st.sampled_from(["hann", "boxcar"]),
     st.integers(0, 2**32 - 1),
 )
-def test_equals_the_zero_padded_fourier_transform_on_its_grid(count, padding, start, bins, window, seed):
+def test_equals_the_zero_padded_fourier_transform_on_its_grid(count, padding, start, bins, seed):
     samples = np.random.default_rng(seed).normal(size=count)
     padded = 1024 * padding
     start = min(start, padded // 2 - bins)
     step = 1.0 / (padded * PERIOD)
-    zoom = Zoom(count, PERIOD, start * step, (start + bins - 1) * step, bins, window)
-    weights = get_window(window, count)
+    zoom = Zoom(count, PERIOD, start * step, (start + bins - 1) * step, bins)
+    weights = get_window("hann", count)
     weighted = weights * (samples - np.average(samples, weights=weights))
     expected = 2.0 / weights.sum() * np.abs(np.fft.rfft(weighted, padded))[start : start + bins]
     np.testing.assert_allclose(zoom(samples), expected, atol=1e-11)
@@ -114,12 +113,11 @@ def test_missing_samples_do_not_change_the_amplitude():
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"around": LinePair(30.0, 20.0)}, "no rising pair"),
+        ({"around": LinePair(30.0, 20.0)}, "not a rising pair"),
         ({"around": LinePair(30.0, 600.0)}, "faster input"),
         ({"bins": 5}, "bins = 5"),
-        ({"window": "flat"}, "window"),
         ({"period": 0.0}, "sample period"),
-        ({"samples": [1.0]}, "no record"),
+        ({"samples": [1.0]}, "not a record"),
         ({"samples": np.full(100, np.nan)}, "none of the 100 samples"),
     ],
 )
@@ -130,11 +128,9 @@ def test_refuses_what_has_no_spectrum(change, words):
         zoom_spectrum(samples, period, **arguments)
 
 
-@pytest.mark.parametrize(
-    "wrong", [{"count": 2}, {"bins": 1}, {"first": -1.0}, {"last": 501.0}, {"first": 30.0}, {"window": "x"}]
-)
+@pytest.mark.parametrize("wrong", [{"count": 2}, {"bins": 1}, {"first": -1.0}, {"last": 501.0}, {"first": 30.0}])
 def test_refuses_a_configuration_that_shows_nothing(wrong):
-    arguments = {"count": 100, "period": PERIOD, "first": 10.0, "last": 20.0, "bins": 10, "window": "hann"} | wrong
+    arguments = {"count": 100, "period": PERIOD, "first": 10.0, "last": 20.0, "bins": 10} | wrong
     with pytest.raises(ParameterError):
         Zoom(**arguments)
 

@@ -6,10 +6,11 @@ import numpy as np
 
 from ...acquisition.record import Record
 from ...arrays import FloatArray
+from ...orders.regression import line_columns, solve_normal
 from ...reducer import LinePair
 from .speed_bins import SpeedBins
 
-_WORST_CONDITION = 12.0  # about a third of the travel that parts the first pair by Fourier means
+_WORST_CONDITION = 12.0  # about a third of the travel that separates the first pair by Fourier means
 _FASTEST_CHANGE = 1.5  # bins a record: faster, the vibration does not follow the speed
 
 
@@ -22,22 +23,15 @@ class SpeedLines(NamedTuple):
     std: LinePair
 
 
-class _Normal:
-    """Normal equations of one speed bin and direction."""
+class _Sums(NamedTuple):
+    """Inner products of the columns of one speed bin and direction, the signal last, and the sum of its speeds."""
 
-    def __init__(self, columns: int) -> None:
-        self.gram = np.zeros((columns, columns))
-        self.right = np.zeros(columns)
-        self.squares = 0.0
-        self.speeds = 0.0
-        self.count = 0
+    matrix: FloatArray
+    speeds: float
+    samples: int
 
-    def add(self, columns: FloatArray, values: FloatArray, rpm: FloatArray) -> None:
-        self.gram += columns.T @ columns
-        self.right += columns.T @ values
-        self.squares += float(values @ values)
-        self.speeds += float(np.abs(rpm).sum())
-        self.count += values.size
+    def plus(self, other: "_Sums") -> "_Sums":
+        return _Sums(self.matrix + other.matrix, self.speeds + other.speeds, self.samples + other.samples)
 
 
 class LinesBySpeed:
@@ -55,7 +49,7 @@ class LinesBySpeed:
     def __init__(self, speeds: SpeedBins, harmonics: int) -> None:
         self._speeds = speeds
         self._harmonics = harmonics
-        self._bins: dict[tuple[int, bool], _Normal] = {}
+        self._bins: dict[tuple[int, bool], _Sums] = {}
 
     def add(self, record: Record) -> None:
         """Take a record's samples, each in its speed bin."""
@@ -64,47 +58,35 @@ class LinesBySpeed:
         if not good.any() or float(np.ptp(rpm)) > _FASTEST_CHANGE * self._speeds.width:
             return
         rpm, values = rpm[good], record.acceleration[good]
-        columns = self._columns(record.angle[good])
+        orders = [k * order for k in range(1, self._harmonics + 1) for order in self._speeds.reducer.output_orders]
+        columns = np.column_stack([line_columns(record.angle[good], orders), np.ones(values.size), values])
         signed = self._speeds.number(rpm) * np.where(rpm < 0, -1, 1)
         for key in np.unique(signed).tolist():
-            mine = signed == key
-            normal = self._bins.setdefault((abs(key), key < 0), _Normal(columns.shape[1]))
-            normal.add(columns[mine], values[mine], rpm[mine])
-
-    def _columns(self, angle: FloatArray) -> FloatArray:
-        orders = self._speeds.reducer.output_orders
-        phases = np.array([k * order for k in range(1, self._harmonics + 1) for order in orders])
-        arguments = np.multiply.outer(angle, phases)
-        return np.concatenate([np.cos(arguments), np.sin(arguments), np.ones((angle.size, 1))], axis=1)
+            mine = columns[signed == key]
+            sums = _Sums(mine.T @ mine, float(np.abs(rpm[signed == key]).sum()), len(mine))
+            old = self._bins.get((abs(key), key < 0))
+            self._bins[abs(key), key < 0] = sums if old is None else old.plus(sums)
 
     def result(self) -> list[SpeedLines]:
-        """Return the amplitudes by rising speed; speeds at which the travel does not part the lines are left out."""
-        chosen: dict[int, _Normal] = {}
-        for (number, _), normal in self._bins.items():
-            if number not in chosen or normal.count > chosen[number].count:
-                chosen[number] = normal
-        return [lines for _, normal in sorted(chosen.items()) for lines in self._solve(normal)]
+        """Return the amplitudes by rising speed; speeds whose travel does not separate the lines are left out."""
+        chosen: dict[int, _Sums] = {}
+        for (number, _), sums in self._bins.items():
+            if number not in chosen or sums.samples > chosen[number].samples:
+                chosen[number] = sums
+        return [lines for _, sums in sorted(chosen.items()) for lines in self._solve(sums)]
 
-    def _solve(self, normal: _Normal) -> list[SpeedLines]:
-        size = normal.right.size
-        scale = np.sqrt(np.maximum(np.diag(normal.gram), 1e-300))
-        scaled = normal.gram / np.outer(scale, scale)
-        if normal.count <= size or np.linalg.cond(scaled) > _WORST_CONDITION:
+    def _solve(self, sums: _Sums) -> list[SpeedLines]:
+        size, lines = len(sums.matrix) - 1, 2 * self._harmonics
+        found = solve_normal(sums.matrix, np.arange(size), _WORST_CONDITION) if sums.samples > size else None
+        if found is None:
             return []
-        inverse = np.linalg.inv(scaled) / np.outer(scale, scale)
-        solution = inverse @ normal.right
-        rest = max(normal.squares - float(solution @ normal.right), 0.0) / (normal.count - size)
-        half = (size - 1) // 2
-        amplitude = np.hypot(solution[:half], solution[half : 2 * half])
-        variance = rest * 0.5 * (np.diag(inverse)[:half] + np.diag(inverse)[half : 2 * half])
-        std = np.sqrt(variance)
-        rpm = normal.speeds / normal.count
+        solution, inverse = found
+        rest = max(float(sums.matrix[-1, -1] - solution @ sums.matrix[:-1, -1]), 0.0) / (sums.samples - size)
+        # Rows: real and imaginary parts; then pair by pair
+        amplitude = np.linalg.norm(solution[: 2 * lines].reshape(2, -1, 2), axis=0)
+        std = np.sqrt(rest * inverse.diagonal()[: 2 * lines].reshape(2, -1, 2).mean(axis=0))
+        rpm = sums.speeds / sums.samples
         return [
-            SpeedLines(
-                rpm,
-                k,
-                LinePair(float(amplitude[2 * k - 2]), float(amplitude[2 * k - 1])),
-                LinePair(float(std[2 * k - 2]), float(std[2 * k - 1])),
-            )
-            for k in range(1, self._harmonics + 1)
+            SpeedLines(rpm, k, LinePair(*pair), LinePair(*errors))
+            for k, (pair, errors) in enumerate(zip(amplitude.tolist(), std.tolist(), strict=True), start=1)
         ]
