@@ -1,0 +1,147 @@
+"""What each mechanism of the estimator costs and saves: every one switched off, on the same random cases.
+
+    python tests/benchmarks/ablation.py [--cases 40] [--seed 7] [--only NAME …]
+
+A row is one mechanism switched off. ``CPU`` is the estimator's CPU time over that of the whole estimator in the same run,
+``error`` the median absolute error of the indexes over the same, ``cover`` the share of 95 % intervals that hold the
+truth, and the rest counts verdicts. A mechanism that only saves time should change nothing but the first column, by more
+than 10 %; one that makes results right should be missed in the others.
+"""
+
+import argparse
+import contextlib
+import math
+import sys
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from unittest import mock
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+
+from tests.simulated.cases import Case, random_case, simulate
+
+from hd_monitor.acquisition.record import Record
+from hd_monitor.diagnosis.judge import Judge
+from hd_monitor.diagnosis.verdict import Component
+from hd_monitor.identification.checks.residual import LineResidual, Overdispersion
+from hd_monitor.identification.fit import gauss_newton, multistart
+from hd_monitor.identification.fit.gauss_newton import Fit, Problem
+from hd_monitor.identification.identifier import Identifier
+from hd_monitor.identification.segment import segment
+from hd_monitor.identification.with_sensor import conclusion, estimator, search
+from hd_monitor.identification.with_sensor.estimator import Estimator
+from hd_monitor.process import set_up_process
+
+Patch = Callable[[], contextlib.AbstractContextManager[object]]
+
+
+def without(target: object, name: str, new: object) -> Patch:
+    """Return what replaces an attribute while a mechanism is off."""
+    return lambda: mock.patch.object(target, name, new)
+
+
+def fit_only(self: Estimator, state: object, fit: Fit) -> tuple[object, Fit]:
+    """Stand for a question that is not asked."""
+    return state, fit
+
+
+def plain_decimation(raw: np.ndarray, period: float, line: float, natural: float) -> object:
+    """Keep the sensor's rate."""
+    return REAL_DECIMATION(raw, period, 1e9, 1e9)
+
+
+REAL_DECIMATION = segment.decimate
+
+MECHANISMS: dict[str, tuple[str, Patch]] = {
+    "linear last step": (
+        "a step too small to bend the model is taken without simulating its end",
+        without(Problem, "_curvature", lambda self, fit: math.inf),
+    ),
+    "simulated starts": (
+        "a start that was simulated already is only weighted again",
+        without(Problem, "_started", lambda self, start: self.at(start.values if isinstance(start, Fit) else start)),
+    ),
+    "decimation": ("samples faster than the lines need are reduced", without(segment, "decimate", plain_decimation)),
+    "tone removal": ("tones of fixed frequency are projected out", without(segment, "foreign_tones", lambda *a: np.empty(0))),
+    "torque regression": ("measured torque is freed from its noise", without(segment, "regress_torque", lambda t, *a: t)),
+    "second look": ("other solutions are tried where the fit is poor", without(estimator, "look_elsewhere", lambda c, s, f: (s, f))),
+    "sensor sign": ("a sensor mounted the other way round is recognised", without(estimator, "turn_sensor", lambda c, s, f: (s, f))),
+    "starts for what was given": ("natural frequency and delay have starts of their own", without(search, "other_starts", lambda *a, **k: [])),
+    "starts for the load": ("the load's phase has starts of its own", without(multistart, "START_LOADS", ())),
+    "score tests": ("what was given is estimated where the data contradict it", without(Estimator, "_question", fit_only)),
+    "line residual": ("intervals are widened by what is left at the lines", without(LineResidual, "inflation", lambda self, span: 1.0)),
+    "overdispersion": ("intervals are widened by what segments contradict", without(Overdispersion, "inflation", 1.0)),
+    "tooth numbers": ("other tooth numbers are tried", without(Estimator, "_question_teeth", lambda self, state, fit: state.teeth)),
+    "sparing looks": ("once sure, only a part of the motion is looked at", without(Identifier, "_is_cruising", False)),
+}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Row:
+    """What an estimator made of all cases."""
+
+    seconds: float
+    error: float
+    cover: float
+    right: int
+    wrong: int
+    undetermined: int
+
+
+def run(cases: Sequence[tuple[Case, list[Record]]]) -> Row:
+    """Identify and judge all cases."""
+    seconds, errors, inside, counts = 0.0, [], [], {"right": 0, "wrong": 0, "undetermined": 0}
+    for case, records in cases:
+        settings = case.settings(**{"diagnosis.confirm_count": 1, "diagnosis.confirm_window": 1})
+        start = time.process_time()
+        identifier = Identifier(settings)
+        for record in records:
+            identifier.add(record)
+        found = identifier.finish()
+        seconds += time.process_time() - start
+        named = Judge(settings).judge(found, "").component
+        counts["undetermined" if named is Component.UNDETERMINED else "right" if named is case.truth else "wrong"] += 1
+        if found is not None and not found.relative:
+            error = np.abs(np.subtract(found.index, case.index))
+            errors.extend(error.tolist())
+            inside.extend((error < 1.96 * np.asarray(found.index_std)).tolist())
+    return Row(seconds=seconds, error=float(np.median(errors)), cover=float(np.mean(inside)), **counts)
+
+
+def rows(cases: Sequence[tuple[Case, list[Record]]], names: Sequence[str]) -> Iterator[tuple[str, str, Row]]:
+    """Yield the whole estimator, then each mechanism switched off."""
+    yield "nothing", "the whole estimator", run(cases)
+    for name in names:
+        text, patch = MECHANISMS[name]
+        with patch():
+            yield name, text, run(cases)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--cases", type=int, default=40)
+    parser.add_argument("--seed", type=int, default=7)
+    parser.add_argument("--only", nargs="*", choices=MECHANISMS, help="mechanisms to switch off (default: each)")
+    options = parser.parse_args(arguments)
+    set_up_process()
+    cases = [random_case(np.random.default_rng([options.seed, number])) for number in range(options.cases)]
+    simulated = [(case, simulate(case)) for case in cases]
+    whole: Row | None = None
+    print(f"{'switched off':26} {'CPU':>6} {'error':>6} {'cover':>6} {'right':>6} {'wrong':>6} {'undet.':>6}")
+    for name, text, row in rows(simulated, options.only or list(MECHANISMS)):
+        whole = whole or row
+        print(
+            f"{name:26} {row.seconds / whole.seconds:6.2f} {row.error / whole.error:6.2f} {row.cover:6.1%} "
+            f"{row.right:6d} {row.wrong:6d} {row.undetermined:6d}  {text}",
+            flush=True,
+        )
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
