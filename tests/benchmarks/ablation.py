@@ -2,19 +2,18 @@
 
     python tests/benchmarks/ablation.py [--cases 40] [--seed 7] [--only NAME …]
 
-A row is one mechanism switched off. ``CPU`` is the estimator's CPU time over that of the whole estimator in the same run,
-``error`` the median absolute error of the indexes over the same, ``cover`` the share of 95 % intervals that hold the
-truth, and the rest counts verdicts. A mechanism that only saves time should change nothing but the first column, by more
-than 10 %; one that makes results right should be missed in the others.
+A row is one mechanism switched off. ``CPU`` is the estimator's CPU time over that of the whole estimator in the same
+run, ``error`` the median absolute error of the indexes over the same, ``cover`` the share of 95 % intervals that hold
+the truth, and the rest counts verdicts. A mechanism that only saves time should change nothing but the first column, by
+more than 10 %; one that makes results right should be missed in the others.
 """
 
 import argparse
 import contextlib
-import math
 import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from unittest import mock
 
@@ -28,11 +27,11 @@ from hd_monitor.acquisition.record import Record
 from hd_monitor.diagnosis.judge import Judge
 from hd_monitor.diagnosis.verdict import Component
 from hd_monitor.identification.checks.residual import LineResidual, Overdispersion
-from hd_monitor.identification.fit import gauss_newton, multistart
-from hd_monitor.identification.fit.gauss_newton import Fit, Problem
+from hd_monitor.identification.fit import multistart
+from hd_monitor.identification.fit.gauss_newton import Fit
 from hd_monitor.identification.identifier import Identifier
-from hd_monitor.identification.segment import segment
-from hd_monitor.identification.with_sensor import conclusion, estimator, search
+from hd_monitor.identification.segment import decimation, segment
+from hd_monitor.identification.with_sensor import estimator, search
 from hd_monitor.identification.with_sensor.estimator import Estimator
 from hd_monitor.process import set_up_process
 
@@ -54,28 +53,44 @@ def plain_decimation(raw: np.ndarray, period: float, line: float, natural: float
     return REAL_DECIMATION(raw, period, 1e9, 1e9)
 
 
-REAL_DECIMATION = segment.decimate
+REAL_DECIMATION = decimation.decimate
 
 MECHANISMS: dict[str, tuple[str, Patch]] = {
-    "linear last step": (
-        "a step too small to bend the model is taken without simulating its end",
-        without(Problem, "_curvature", lambda self, fit: math.inf),
-    ),
-    "simulated starts": (
-        "a start that was simulated already is only weighted again",
-        without(Problem, "_started", lambda self, start: self.at(start.values if isinstance(start, Fit) else start)),
-    ),
     "decimation": ("samples faster than the lines need are reduced", without(segment, "decimate", plain_decimation)),
-    "tone removal": ("tones of fixed frequency are projected out", without(segment, "foreign_tones", lambda *a: np.empty(0))),
-    "torque regression": ("measured torque is freed from its noise", without(segment, "regress_torque", lambda t, *a: t)),
-    "second look": ("other solutions are tried where the fit is poor", without(estimator, "look_elsewhere", lambda c, s, f: (s, f))),
-    "sensor sign": ("a sensor mounted the other way round is recognised", without(estimator, "turn_sensor", lambda c, s, f: (s, f))),
-    "starts for what was given": ("natural frequency and delay have starts of their own", without(search, "other_starts", lambda *a, **k: [])),
+    "tone removal": (
+        "tones of fixed frequency are projected out",
+        without(segment, "foreign_tones", lambda *a: np.empty(0)),
+    ),
+    "torque regression": (
+        "measured torque is freed from its noise",
+        without(segment, "regress_torque", lambda t, *a: t),
+    ),
+    "second look": (
+        "other solutions are tried where the fit is poor",
+        without(estimator, "look_elsewhere", lambda c, s, f: (s, f)),
+    ),
+    "sensor sign": (
+        "a sensor mounted the other way round is recognised",
+        without(estimator, "turn_sensor", lambda c, s, f: (s, f)),
+    ),
+    "starts for what was given": (
+        "natural frequency and delay have starts of their own",
+        without(search, "other_starts", lambda *a, **k: []),
+    ),
     "starts for the load": ("the load's phase has starts of its own", without(multistart, "START_LOADS", ())),
-    "score tests": ("what was given is estimated where the data contradict it", without(Estimator, "_question", fit_only)),
-    "line residual": ("intervals are widened by what is left at the lines", without(LineResidual, "inflation", lambda self, span: 1.0)),
+    "score tests": (
+        "what was given is estimated where the data contradict it",
+        without(Estimator, "_question", fit_only),
+    ),
+    "line residual": (
+        "intervals are widened by what is left at the lines",
+        without(LineResidual, "inflation", lambda self, span: 1.0),
+    ),
     "overdispersion": ("intervals are widened by what segments contradict", without(Overdispersion, "inflation", 1.0)),
-    "tooth numbers": ("other tooth numbers are tried", without(Estimator, "_question_teeth", lambda self, state, fit: state.teeth)),
+    "tooth numbers": (
+        "other tooth numbers are tried",
+        without(Estimator, "_question_teeth", lambda self, state, fit: state.teeth),
+    ),
     "sparing looks": ("once sure, only a part of the motion is looked at", without(Identifier, "_is_cruising", False)),
 }
 

@@ -8,9 +8,9 @@ from typing import Self
 import numpy as np
 
 from ..arrays import ComplexArray, FloatArray
+from ..model.critical_speed import critical_speed
 from ..model.parameters import ParametricModel
 from ..reducer import LinePair
-from .checks.critical_speed import critical_speed
 from .fit.gauss_newton import FitStatus
 from .limitation import Limitation
 

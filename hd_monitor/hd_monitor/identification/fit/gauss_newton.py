@@ -12,16 +12,13 @@ from ..segment.segment import Segment
 from .information import Information
 from .linearisation import Predictor
 from .noise import NoiseFloor
-from .normal_equations import LinearisedSegment, NormalEquations, examine
+from .normal_equations import LinearisedSegment, NormalEquations, linearise
 
 LARGEST_FLUCTUATION = 0.8
 """Sum of all abs(β) beyond which the stiffness would come near zero; steps end there."""
 
 CONVERGED = 0.05
 """Size of a step, in standard deviations of the unknowns, below which the fit stands."""
-
-NEGLIGIBLE = 0.1
-"""Standard deviations that a step may miss its end by for being taken along a straight line."""
 
 _HALVINGS = 5
 _TRIAL_ROUNDS = 3  # after which the best of several starts go on
@@ -100,11 +97,7 @@ class Problem:
 
     def at(self, values: FloatArray) -> Fit:
         """Evaluate a point."""
-        return self._fit(
-            values, tuple(examine(segment, self.predictor, values, self.floor) for segment in self.segments)
-        )
-
-    def _fit(self, values: FloatArray, segments: tuple[LinearisedSegment, ...]) -> Fit:
+        segments = tuple(linearise(segment, self.predictor, values, self.floor) for segment in self.segments)
         equations = segments[0].equations
         for item in segments[1:]:
             equations = equations + item.equations
@@ -126,27 +119,16 @@ class Problem:
             status=FitStatus.CONVERGED if step_size < CONVERGED else FitStatus.ROUNDS_USED_UP,
         )
 
-    def solve(self, start: FloatArray | Fit, *, rounds: int) -> Fit:
+    def solve(self, start: FloatArray, *, rounds: int) -> Fit:
         """Take Gauss-Newton steps from `start`, at most `rounds`."""
-        fit = self._descend(self._started(start), rounds)
+        fit = self._descend(self.at(start), rounds)
         on_bound = self.active & (np.abs(fit.values) >= self.predictor.unknowns.bounds())
         return replace(fit, status=FitStatus.ON_BOUND) if on_bound.any() else fit
-
-    def _started(self, start: FloatArray | Fit) -> Fit:
-        """Evaluate the start; of one that was simulated already, only the weights are new."""
-        if not isinstance(start, Fit):
-            return self.at(start)
-        here = tuple(item.segment for item in start.segments if item.values is item.simulated)
-        if here != tuple(self.segments):
-            return self.at(start.values)
-        return self._fit(start.values, tuple(item.weighted(self.floor) for item in start.segments))
 
     def _descend(self, fit: Fit, rounds: int) -> Fit:
         for _ in range(rounds):
             if fit.step_size < CONVERGED:
                 break
-            if self._curvature(fit) < NEGLIGIBLE:
-                return self._moved(fit)
             step = fit.step * self._room(fit.values, fit.step)
             for _ in range(_HALVINGS):
                 trial = self.at(self._bounded(fit.values + step))
@@ -158,33 +140,6 @@ class Problem:
             fit = trial
         return fit
 
-    def _curvature(self, fit: Fit) -> float:
-        """Size of what the model is beyond linear over the next step, in standard deviations of the unknowns."""
-        unknowns = self.predictor.unknowns
-        part = np.abs(fit.step) / unknowns.linear_range()
-        forces = unknowns.mask(unknowns.load, unknowns.torque, unknowns.inertia)
-        information = fit.equations.information + self.prior.matrix
-        forced, rest = (
-            math.sqrt(max(float(step @ information @ step), 0.0)) for step in (fit.step * forces, fit.step * ~forces)
-        )
-        # The prediction is linear in the forces: they bend it together with the other unknowns only
-        return (forced + rest) * float(part[~forces].max()) + rest * float(part[forces].max())
-
-    def _moved(self, fit: Fit) -> Fit:
-        """Return the fit after its next step, which is so small that evaluating the model there adds nothing."""
-        equations = fit.equations.moved(fit.step)
-        values = fit.values + fit.step
-        return Fit(
-            values=values,
-            segments=tuple(item.moved(fit.step) for item in fit.segments),
-            equations=equations,
-            cost=equations.cost + self.prior.cost(values),
-            step=np.zeros(values.size),
-            step_size=0.0,
-            covariance=fit.covariance,
-            status=FitStatus.CONVERGED,
-        )
-
     def multistart(self, starts: Sequence[FloatArray], *, rounds: int) -> tuple["Problem", Fit]:
         """Solve from several starts and return the best solution, with the floor of white noise that belongs to it.
 
@@ -195,8 +150,8 @@ class Problem:
         unknowns = self.predictor.unknowns
         held = self.active & ~unknowns.mask(unknowns.load)
         first = [replace(self, active=held).solve(start, rounds=1) for start in starts]
-        tried = sorted((self._scaled(fit)._priced(fit, _TRIAL_ROUNDS) for fit in first), key=lambda t: t[0])
-        final = [problem._scaled(fit)._priced(fit, rounds) for _, problem, fit in tried[:_FINALISTS]]
+        tried = sorted((self._scaled(fit)._priced(fit.values, _TRIAL_ROUNDS) for fit in first), key=lambda t: t[0])
+        final = [problem._scaled(fit)._priced(fit.values, rounds) for _, problem, fit in tried[:_FINALISTS]]
         _, problem, fit = min(final, key=lambda t: t[0])
         return problem, fit
 
@@ -204,7 +159,7 @@ class Problem:
         """Return the problem with a floor of white noise as strong as what a fit leaves."""
         return replace(self, floor=NoiseFloor.white(self.floor.mean * fit.equations.cost / fit.equations.freedom))
 
-    def _priced(self, start: Fit, rounds: int) -> tuple[float, "Problem", Fit]:
+    def _priced(self, start: FloatArray, rounds: int) -> tuple[float, "Problem", Fit]:
         """Solve, and give minus twice the logarithm of the likelihood, the noise's variance being at its own best."""
         fit = self.solve(start, rounds=rounds)
         freedom = fit.equations.freedom

@@ -1,6 +1,6 @@
 """Evidence as normal equations: what a segment says about the unknowns around a point, in sums that add up."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -30,15 +30,6 @@ class NormalEquations:
     cost: float
     freedom: float
 
-    def moved(self, step: FloatArray) -> "NormalEquations":
-        """Return the same quadratic model about the point that `step` leads to."""
-        downhill = self.information @ step
-        return replace(
-            self,
-            score=self.score - downhill,
-            cost=self.cost - 2.0 * float(self.score @ step) + float(step @ downhill),
-        )
-
     def __add__(self, other: "NormalEquations") -> "NormalEquations":
         """Pool two pieces of evidence about the same point."""
         return NormalEquations(
@@ -56,31 +47,21 @@ class LinearisedSegment:
     Attributes
     ----------
     segment : Segment
-    values, simulated : ndarray, shape (unknowns,)
-        The point, and the one at which the segment was simulated: another where the evidence was moved.
     equations : NormalEquations
     linearisation : Linearisation
-    columns : ndarray, shape (2 * bins, 3 + unknowns)
-        Transforms of free vibrations, residual and derivatives where simulated, not weighted.
     residual : ndarray, shape (2 * bins,)
         Transform of the residual, free vibrations taken off, not weighted.
     derivatives : ndarray, shape (2 * bins, unknowns)
-        The same of the prediction's derivatives.
-    std : ndarray, shape (2 * bins,)
-        Standard deviation that the noise floor gave the rows.
+        The same of the prediction's derivatives, in standard deviations of the noise.
     free_leverage : ndarray, shape (2 * bins,)
         Part of the noise in every row that the fit of the free vibrations takes away.
     """
 
     segment: Segment
-    values: FloatArray
-    simulated: FloatArray
     equations: NormalEquations
     linearisation: Linearisation
-    columns: FloatArray
     residual: FloatArray
     derivatives: FloatArray
-    std: FloatArray
     free_leverage: FloatArray
 
     def leverage(self, covariance: FloatArray) -> FloatArray:
@@ -93,52 +74,23 @@ class LinearisedSegment:
         covariance : ndarray, shape (unknowns, unknowns)
             Of the unknowns fitted, this segment included; 0 for the others.
         """
-        rows = self.derivatives / self.std[:, None]
+        rows = self.derivatives
         return np.asarray(self.free_leverage + np.einsum("ij,ij->i", rows @ covariance, rows))
 
-    def moved(self, step: FloatArray) -> "LinearisedSegment":
-        """Return what the segment says at a point a small `step` of the unknowns on, to first order of the step."""
-        return replace(
-            self,
-            values=self.values + step,
-            equations=self.equations.moved(step),
-            linearisation=self.linearisation.moved(self.segment, step),
-            residual=self.residual - self.derivatives @ step,
-        )
 
-    def weighted(self, floor: NoiseFloor) -> "LinearisedSegment":
-        """Return what the segment says under another noise floor; nothing is simulated for that."""
-        return _weighted(self.segment, self.linearisation, self.columns, floor, self.values, self.simulated)
-
-
-def examine(segment: Segment, predictor: Predictor, values: FloatArray, floor: NoiseFloor) -> LinearisedSegment:
-    """Linearise a segment at `values` and weight it by the noise floor."""
+def linearise(segment: Segment, predictor: Predictor, values: FloatArray, floor: NoiseFloor) -> LinearisedSegment:
+    """Linearise a segment at `values`, weighted by the noise floor."""
     line = predictor.linearise(segment, values)
     columns = segment.transform(np.concatenate([line.free, line.residual[:, None], line.jacobian], axis=1))
-    return _weighted(segment, line, columns, floor, values, values)
-
-
-def _weighted(
-    segment: Segment,
-    line: Linearisation,
-    columns: FloatArray,
-    floor: NoiseFloor,
-    values: FloatArray,
-    simulated: FloatArray,
-) -> LinearisedSegment:
     frequencies = segment.frequencies
     std = np.tile(floor.sample_std(frequencies, segment.period), 2)
     weighted = columns / std[:, None]
-    if values is not simulated:
-        weighted[:, 2] -= weighted[:, 3:] @ (values - simulated)
     free, _ = np.linalg.qr(weighted[:, :2])
     white = weighted[:, 2:]
     white -= free @ (free.T @ white)
     gram = white.T @ white
     return LinearisedSegment(
         segment=segment,
-        values=values,
-        simulated=simulated,
         equations=NormalEquations(
             information=gram[1:, 1:],
             score=gram[1:, 0],
@@ -146,9 +98,7 @@ def _weighted(
             freedom=2.0 * frequencies.size * segment.fill - 2.0,
         ),
         linearisation=line,
-        columns=columns,
         residual=white[:, 0] * std,
-        derivatives=white[:, 1:] * std[:, None],
-        std=std,
+        derivatives=white[:, 1:],
         free_leverage=np.einsum("ij,ij->i", free, free),
     )

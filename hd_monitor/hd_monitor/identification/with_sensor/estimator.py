@@ -98,7 +98,7 @@ class Estimator:
         if state.floor is None:
             state = replace(state, schedule=state.schedule.with_look(state.seconds))
             small, best = multistart_newest(context.problem_of_all(state), [state.values], rounds=_FEW_ROUNDS)
-            return restart(context, state, small, [best], _FEW_ROUNDS)
+            return restart(context, state, small, [best.values], _FEW_ROUNDS)
         young = state.seconds <= WINDOW
         if young and state.seconds >= 2.0 * state.schedule.restarted:
             return self._fit_all(state, state.values)

@@ -5,15 +5,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...orders.regression import solve_normal
+from ...orders.regression import line_columns, solve_normal
 from ...reducer import LinePair, Reducer
+from ..fit.multistart import newest_segments
 from ..fit.noise import NoiseFloor
 from ..result import LineEstimate
-from ..segment.path import powers
 from ..segment.segment import Segment
-
-NEWEST = 4.5
-"""Motion [s] that the amplitudes stand for."""
 
 _SIDE_TRAVEL = 0.55 * math.tau  # rad of travel from which the lines between and beside a pair are fitted too
 
@@ -36,11 +33,7 @@ def measure_lines(
     floor : NoiseFloor
         From which the standard deviations follow.
     """
-    newest = [recent[-1]]
-    for segment in recent[-2::-1]:
-        if sum(s.duration for s in newest) + segment.duration > NEWEST:
-            break
-        newest.append(segment)
+    newest = newest_segments(recent)
     angle = np.concatenate([s.angle[s.used] for s in newest])
     values = np.concatenate([(s.acceleration - s.slow @ (s.slow.T @ s.acceleration))[s.used] for s in newest])
     top_speed = max(float(np.abs(s.speed).max()) for s in newest)
@@ -51,14 +44,11 @@ def measure_lines(
     if not pairs:
         return ()
     gap = highest_order - lowest_order
-    places = [place for k in pairs for place in ((k, 0), (k, k))]  # (k, m): k times the lowest order, m gaps above
+    orders = [k * order for k in pairs for order in (lowest_order, highest_order)]
     if float(np.ptp(angle)) > _SIDE_TRAVEL:
-        places += [(k, m) for k in pairs for m in range(-1, k + 2) if m not in (0, k)]
-    orders = [k * lowest_order + m * gap for k, m in places]
-    base, side = (powers(np.exp(1j * order * angle), len(pairs) + 1) for order in (lowest_order, gap))
-    phase = np.stack([base[k] * (side[m] if m >= 0 else side[-m].conj()) for k, m in places])
-    columns = np.concatenate([phase.real, -phase.imag, values[None]])
-    fit = solve_normal(columns @ columns.T, np.arange(2 * len(orders)))
+        orders += [k * lowest_order + m * gap for k in pairs for m in range(-1, k + 2) if m not in (0, k)]
+    columns = np.column_stack([line_columns(angle, orders), values])
+    fit = solve_normal(columns.T @ columns, np.arange(2 * len(orders)))
     if fit is None:
         return ()
     solution, inverse = fit

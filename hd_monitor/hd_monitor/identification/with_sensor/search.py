@@ -41,14 +41,14 @@ def look_elsewhere(context: Context, state: State, fit: Fit) -> tuple[State, Fit
 
 
 def restart(
-    context: Context, state: State, small: Problem, starts: Sequence[FloatArray | Fit], rounds: int
+    context: Context, state: State, small: Problem, starts: Sequence[FloatArray], rounds: int
 ) -> tuple[State, Fit]:
     """Fit all segments at hand from what the newest ones told, and forget what was learnt of them before."""
     state = state.restarted()
     problem = context.problem_of_all(state)
     whole = replace(problem, floor=small.floor)
     fit = min((whole.solve(start, rounds=rounds) for start in starts), key=lambda f: f.cost)
-    return state, replace(problem, floor=fit.floor).solve(fit, rounds=rounds)
+    return state, replace(problem, floor=fit.floor).solve(fit.values, rounds=rounds)
 
 
 def turn_sensor(context: Context, state: State, fit: Fit) -> tuple[State, Fit]:

@@ -5,8 +5,8 @@ import math
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from ...model.parameters import ParametricModel
-from ...model.stability import growth_rate
+from .parameters import ParametricModel
+from .stability import growth_rate
 
 _THRESHOLD = 4.0  # of a single β over ζ, at its principal tongue
 _SAFETY = 0.85  # part of that threshold below which the sum of the two splines' β is harmless

@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import pytest
 
-from hd_monitor.identification.checks.critical_speed import critical_speed
 from hd_monitor.model import Dynamics, ParametricModel, StiffnessSeries, Torque, growth_rate, table_1
+from hd_monitor.model.critical_speed import critical_speed
 from hd_monitor.reducer import Reducer
 
 
