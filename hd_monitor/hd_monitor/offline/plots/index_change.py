@@ -5,15 +5,14 @@ from collections.abc import Sequence
 from matplotlib.figure import Figure
 
 from ..comparison import IndexChange
-from .style import AFTER, BEFORE, INK, legend_above, limits, new_figure
+from .style import AFTER, BEFORE, INK, legend_above, limits, one_panel
 
 _BANDS = 1.96
 
 
 def index_change_plot(changes: Sequence[IndexChange], *, warn: float, error: float, title: str) -> Figure:
     """Draw index changes as pairs of columns with 95 % bars."""
-    with new_figure((8.0, 3.9)) as figure:
-        axes = figure.add_subplot()
+    with one_panel((8.0, 3.9), title=title, ylabel="stiffness index [%]") as (figure, axes):
         axes.grid(visible=False, axis="x")
         highest = 100 * error
         for place, change in enumerate(changes):
@@ -37,9 +36,6 @@ def index_change_plot(changes: Sequence[IndexChange], *, warn: float, error: flo
                 highest = max(highest, top)
         limits(axes, warn, error)
         axes.set_xticks(range(len(changes)), [change.spline.replace("_", " ") for change in changes])
-        axes.set_xlim(-0.6, len(changes) - 0.15)
-        axes.set_ylim(0.0, 1.18 * highest)
-        axes.set_ylabel("stiffness index [%]")
-        axes.set_title(title)
+        axes.set(xlim=(-0.6, len(changes) - 0.15), ylim=(0.0, 1.18 * highest))
         legend_above(axes)
         return figure

@@ -8,7 +8,7 @@ from ..report.lines_by_speed import SpeedLines
 from .style import CIRCULAR_SPLINE, FLEXSPLINE, SOFT, legend_above, new_figure
 
 
-def lines_plot(lines: Sequence[SpeedLines], *, resonances: Sequence[float], title: str, unit: str = "rad/s²") -> Figure:
+def lines_plot(lines: Sequence[SpeedLines], *, resonances: Sequence[float], title: str) -> Figure:
     """Draw line amplitudes with their standard deviations; `resonances` are the pairs' critical speeds [rpm]."""
     pairs = sorted({line.k for line in lines})
     with new_figure((8.0, 1.5 + 1.9 * len(pairs))) as figure:
@@ -22,7 +22,7 @@ def lines_plot(lines: Sequence[SpeedLines], *, resonances: Sequence[float], titl
                     color=look.colour, label=look.label, capsize=2.0, elinewidth=1.0,
                 )  # fmt: skip
             axes.set_ylim(bottom=0.0)
-            axes.set_ylabel(f"k = {k}  [{unit}]")
+            axes.set_ylabel(f"k = {k}  [rad/s²]")
             low, high = axes.get_xlim()
             if k <= len(resonances) and low <= resonances[k - 1] <= high:
                 axes.axvline(resonances[k - 1], color=SOFT, linestyle=":", linewidth=1.4, label="resonance")

@@ -2,54 +2,47 @@
 
 from collections.abc import Sequence
 
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ...orders.rms_curve import SpeedBin
-from .style import AFTER, BEFORE, INK, SOFT, Look, legend_above, new_figure, room_above
+from .style import AFTER, BEFORE, INK, SOFT, Look, legend_above, one_panel, room_above
 
 _CURVE = Look(label="RMS", colour=INK, marker="o", line="-")
 
 
 def rms_plot(bins: Sequence[SpeedBin], *, critical: Sequence[tuple[float, str]], title: str) -> Figure:
     """Draw a property curve; `critical` are speeds [rpm] with their names."""
-    with new_figure() as figure:
-        axes = figure.add_subplot()
-        _curve(axes, bins, _CURVE)
-        _finish(axes, critical, title)
-        return figure
+    return _drawn([(bins, _CURVE)], critical, title)
 
 
 def compared_rms_plot(
     before: Sequence[SpeedBin], after: Sequence[SpeedBin], *, critical: Sequence[tuple[float, str]], title: str
 ) -> Figure:
     """Draw the property curves before and after a change over each other."""
-    with new_figure() as figure:
-        axes = figure.add_subplot()
-        _curve(axes, before, BEFORE)
-        _curve(axes, after, AFTER)
-        _finish(axes, critical, title)
-        legend_above(axes)
+    return _drawn([(before, BEFORE), (after, AFTER)], critical, title)
+
+
+def _drawn(
+    curves: Sequence[tuple[Sequence[SpeedBin], Look]], critical: Sequence[tuple[float, str]], title: str
+) -> Figure:
+    with one_panel(title=title, xlabel="wave-generator speed [rpm]", ylabel="RMS of the vibration [m/s²]") as drawn:
+        figure, axes = drawn
+        for bins, look in curves:
+            speeds, values = [b.rpm for b in bins], [b.rms for b in bins]
+            axes.plot(
+                speeds, values, look.line, marker=look.marker, markersize=4.5, color=look.colour, label=look.label
+            )
+        axes.set_ylim(bottom=0.0)
+        low, high = axes.get_xlim()
+        inside = [(speed, name) for speed, name in critical if low <= speed <= high]
+        if inside:
+            room_above(axes, 0.12)
+        for speed, name in inside:
+            axes.axvline(speed, color=SOFT, linestyle=":", linewidth=1.2)
+            axes.annotate(
+                name, (speed, 0.985), xycoords=("data", "axes fraction"), xytext=(3, 0), textcoords="offset points",
+                va="top", fontsize=9, color=SOFT,
+            )  # fmt: skip
+        if len(curves) > 1:
+            legend_above(axes)
         return figure
-
-
-def _curve(axes: Axes, bins: Sequence[SpeedBin], look: Look) -> None:
-    speeds, values = [b.rpm for b in bins], [b.rms for b in bins]
-    axes.plot(speeds, values, look.line, marker=look.marker, markersize=4.5, color=look.colour, label=look.label)
-
-
-def _finish(axes: Axes, critical: Sequence[tuple[float, str]], title: str) -> None:
-    axes.set_ylim(bottom=0.0)
-    low, high = axes.get_xlim()
-    inside = [(speed, name) for speed, name in critical if low <= speed <= high]
-    if inside:
-        room_above(axes, 0.12)
-    for speed, name in inside:
-        axes.axvline(speed, color=SOFT, linestyle=":", linewidth=1.2)
-        axes.annotate(
-            name, (speed, 0.985), xycoords=("data", "axes fraction"), xytext=(3, 0), textcoords="offset points",
-            va="top", fontsize=9, color=SOFT,
-        )  # fmt: skip
-    axes.set_xlabel("wave-generator speed [rpm]")
-    axes.set_ylabel("RMS of the vibration [m/s²]")
-    axes.set_title(title)

@@ -71,6 +71,15 @@ def new_figure(size: tuple[float, float] = WIDE) -> Iterator[Figure]:
         yield figure
 
 
+@contextmanager
+def one_panel(size: tuple[float, float] = WIDE, **labels: str) -> Iterator[tuple[Figure, Axes]]:
+    """Give a figure with one pair of axes; `labels` are their title, xlabel and ylabel."""
+    with new_figure(size) as figure:
+        axes = figure.add_subplot()
+        axes.set(**labels)
+        yield figure, axes
+
+
 def png(figure: Figure) -> bytes:
     """Return a figure as PNG."""
     buffer = io.BytesIO()
@@ -89,15 +98,17 @@ def draw_spectrum(axes: Axes, position: FloatArray, amplitude: FloatArray) -> No
 def room_above(axes: Axes, share: float) -> None:
     """Leave a share of the height free above the data, for labels."""
     low, high = axes.get_ylim()
-    if axes.get_yscale() == "log":
-        axes.set_ylim(low, high * (high / low) ** share)
-    else:
-        axes.set_ylim(low, high + share * (high - low))
+    axes.set_ylim(low, high + share * (high - low))
 
 
 def legend_above(axes: Axes, **options: Any) -> None:
     """Put the legend at the top right, beside the title and out of the data's way."""
     axes.legend(**({"loc": "lower right", "bbox_to_anchor": (1.0, 1.0), "ncols": 3, "borderaxespad": 0.2} | options))
+
+
+def natural_frequency_label(frequency: float) -> str:
+    """Name a natural frequency [Hz] in a legend."""
+    return f"natural frequency {frequency:.1f} Hz"
 
 
 def limits(axes: Axes, warn: float, error: float) -> None:

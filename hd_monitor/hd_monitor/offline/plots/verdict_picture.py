@@ -7,14 +7,15 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ...orders.zoom import ZoomSpectrum
-from .style import CIRCULAR_SPLINE, FLEXSPLINE, SOFT, Look, draw_spectrum, new_figure, room_above
+from .style import CIRCULAR_SPLINE, FLEXSPLINE, SOFT, Look, draw_spectrum, one_panel, room_above
 
 _TITLE_WIDTH = 78
+_UNIT = "rad/s²"
 _PAPER = {"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 1.5}
 """Under the labels, which may cross the curve."""
 
 
-def verdict_picture(zoom: ZoomSpectrum, *, title: str, subtitle: str = "", unit: str = "rad/s²") -> Figure:
+def verdict_picture(zoom: ZoomSpectrum, *, title: str, subtitle: str) -> Figure:
     """Draw a zoom spectrum under its verdict.
 
     Parameters
@@ -24,38 +25,30 @@ def verdict_picture(zoom: ZoomSpectrum, *, title: str, subtitle: str = "", unit:
         The verdict in words.
     subtitle : str
         Where it comes from: the joint and the speed, say.
-    unit : str
-        Unit of the amplitudes.
     """
-    with new_figure() as figure:
-        axes = figure.add_subplot()
+    with one_panel(xlabel="frequency [Hz]", ylabel=f"amplitude [{_UNIT}]") as (figure, axes):
         draw_spectrum(axes, zoom.frequencies, zoom.amplitude)
         room_above(axes, 0.22)
         pairs = zip((CIRCULAR_SPLINE, FLEXSPLINE), zoom.lines, zoom.line_amplitudes, ("right", "left"), strict=True)
         for look, frequency, amplitude, side in pairs:
-            _mark(axes, look, frequency, amplitude, side, unit)
-        axes.set_xlabel("frequency [Hz]")
-        axes.set_ylabel(f"amplitude [{unit}]")
-        axes.set_title("\n".join(textwrap.wrap(_with_fixed_numbers(title), _TITLE_WIDTH)))
+            _mark(axes, look, frequency, amplitude, side)
         note = f"line pair k = {zoom.k}" + ("" if zoom.resolved else "; too short a record to part the two lines")
-        text = f"{subtitle}   {note}" if subtitle else note
         axes.annotate(
-            text, (0.0, 1.0), xycoords="axes fraction", xytext=(0, 3), textcoords="offset points", fontsize=9,
-            color=SOFT, va="bottom",
+            f"{subtitle}   {note}", (0.0, 1.0), xycoords="axes fraction", xytext=(0, 3), textcoords="offset points",
+            fontsize=9, color=SOFT, va="bottom",
         )  # fmt: skip
-        axes.title.set_position((0.0, 1.0))
-        axes.set_title(axes.get_title(loc="left"), loc="left", pad=20.0)
+        axes.set_title("\n".join(textwrap.wrap(_with_fixed_numbers(title), _TITLE_WIDTH)), pad=20.0)
         return figure
 
 
-def _mark(axes: Axes, look: Look, frequency: float, amplitude: float, side: str, unit: str) -> None:
+def _mark(axes: Axes, look: Look, frequency: float, amplitude: float, side: str) -> None:
     top = axes.get_ylim()[1]
     axes.vlines(frequency, 0.0, amplitude, color=look.colour, linewidth=2.2, linestyle=look.line)
     axes.plot(frequency, amplitude, look.marker, color=look.colour, markersize=8, zorder=5)
     left, right = axes.get_xlim()
     beside = 0.012 * (right - left) * (-1.0 if side == "right" else 1.0)
     axes.annotate(
-        f"{look.label}\n{frequency:.2f} Hz\n{_short(amplitude)} {unit}",
+        f"{look.label}\n{frequency:.2f} Hz\n{_short(amplitude)} {_UNIT}",
         (frequency, amplitude), xytext=(frequency + beside, min(amplitude + 0.02 * top, 0.84 * top)),
         ha=side, va="bottom", fontsize=10, color=look.colour, fontweight="bold", linespacing=1.25, bbox=_PAPER,
     )  # fmt: skip

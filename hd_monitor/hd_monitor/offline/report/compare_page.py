@@ -1,11 +1,8 @@
 """The report of a comparison: what changed, in words and pictures, on one HTML page."""
 
-import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
-
-from matplotlib.figure import Figure
 
 from ...model.parameters import Dynamics
 from ...orders.rms_curve import SpeedBin
@@ -14,10 +11,10 @@ from ..comparison import JointChange
 from ..plots.index_change import index_change_plot
 from ..plots.rms_curve import compared_rms_plot
 from ..plots.style import png
-from .page import render, write_files
-from .pictures import Picture
+from .page import write_page
+from .pictures import FEWEST_SPEEDS, pair_speeds
 
-_FEWEST_SPEEDS = 3
+_NAMES = ("property_curves", "indexes")
 
 
 def write_comparison(folder: Path, content: Mapping[str, Any], changes: Sequence[JointChange]) -> Path:
@@ -35,52 +32,30 @@ def write_comparison(folder: Path, content: Mapping[str, Any], changes: Sequence
     ParameterError
         If the folder cannot be written.
     """
-    sections: list[dict[str, Any]] = [{"change": change, "pictures": list(_pictures(change))} for change in changes]
-    page = render("comparison.html.j2", content=content, sections=sections)
-    several = len(changes) > 1
-    files = {}
-    for change, section in zip(changes, sections, strict=True):
-        prefix = re.sub(r"[^\w.-]+", "_", change.joint) + "_" if several else ""
-        files.update({prefix + picture.name: picture.png for picture in section["pictures"]})
-    return write_files(folder, page, files)
+    sections = [{"joint": change.joint, "change": change, "pictures": _pictures(change)} for change in changes]
+    return write_page(folder, "comparison.html.j2", content, sections, _NAMES)
 
 
-def _pictures(change: JointChange) -> Iterator[Picture]:
-    figure = _curves(change)
-    if figure is not None:
-        yield Picture(
-            "property_curves",
-            "RMS over speed",
-            "The property curves before and after. At the dotted speeds a line pair meets the natural frequency.",
-            png(figure),
-        )
-    if change.indexes:
-        figure = index_change_plot(
-            change.indexes,
-            warn=change.after["warn_limit"],
-            error=change.after["error_limit"],
-            title="Stiffness indexes before and after",
-        )
-        yield Picture("indexes", "Indexes", "Both splines' indexes with their 95 % bars.", png(figure))
-
-
-def _curves(change: JointChange) -> Figure | None:
+def _pictures(change: JointChange) -> dict[str, bytes]:
+    drawn = {}
     curves = [[SpeedBin(b["rpm"], b["rms"], b["samples"]) for b in side["rms_curve"]] for side in change[1:3]]
-    if max(len(curve) for curve in curves) < _FEWEST_SPEEDS:
-        return None
-    return compared_rms_plot(curves[0], curves[1], critical=_critical(change.after), title="Vibration over speed")
+    if max(map(len, curves)) >= FEWEST_SPEEDS:
+        critical = _critical(change.after)
+        drawn["property_curves"] = compared_rms_plot(*curves, critical=critical, title="Vibration over speed")
+    if change.indexes:
+        limits = {"warn": change.after["warn_limit"], "error": change.after["error_limit"]}
+        drawn["indexes"] = index_change_plot(change.indexes, **limits, title="Stiffness indexes before and after")
+    return {name: png(figure) for name, figure in drawn.items()}
 
 
 def _critical(entry: Mapping[str, Any]) -> list[tuple[float, str]]:
-    """Speeds [rpm] at which the pairs meet the natural frequency that was found, or else given."""
+    """Speeds [rpm] at which the pairs meet the natural frequency that was given."""
     parameters = entry.get("parameters", {})
     if "reducer.flexspline_teeth" not in parameters:
         return []
-    reducer = Reducer(
-        flexspline_teeth=parameters["reducer.flexspline_teeth"],
-        circular_spline_teeth=parameters["reducer.circular_spline_teeth"],
-        mount=parameters["reducer.mount"],
-    )
+    reducer = Reducer(**{name: parameters[f"reducer.{name}"] for name in _REDUCER})
     natural = parameters.get("dynamics.natural_frequency", Dynamics().natural_frequency)
-    count = parameters.get("analysis.harmonics", 3)
-    return [(60.0 * natural / (reducer.circular_spline_order * k), f"k = {k}") for k in range(1, count + 1)]
+    return pair_speeds(reducer, natural, parameters.get("analysis.harmonics", 3))
+
+
+_REDUCER = ("flexspline_teeth", "circular_spline_teeth", "mount")

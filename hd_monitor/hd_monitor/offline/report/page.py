@@ -2,46 +2,18 @@
 
 import base64
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from ...diagnosis.verdict import Level
 from ...errors import ParameterError
 from ..result import JointResult
 from .collector import Collector
 from .pictures import PICTURE_NAMES, pictures, unit_of
-from .quality_table import quality_rows
 
 PAGE = "index.html"
-
-_FIGURES = (
-    "speed (rpm)",
-    "rms (m/s^2)",
-    "travel (deg)",
-    "travel needed (deg)",
-    "signal to noise (dB)",
-    "misfit",
-    "natural frequency (Hz)",
-    "damping ratio",
-    "load fluctuation (N*m)",
-    "unstable from (rpm)",
-)
-
-
-def render(template: str, **values: Any) -> str:
-    """Fill in one of the package's page templates."""
-    environment = Environment(
-        loader=PackageLoader("hd_monitor.offline.report", "."),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters["data_uri"] = lambda png: "data:image/png;base64," + base64.b64encode(png).decode("ascii")
-    return environment.get_template(template).render(**values)
 
 
 def write_report(
@@ -75,44 +47,54 @@ def write_report(
             {
                 "joint": result.plan.joint,
                 "entry": entry,
-                "level": Level(entry["verdict"]["level"]).name if entry["verdict"] else "none",
                 "unusable": result.unusable,
-                "figures": [(name, entry["status"][name]) for name in _FIGURES if name in entry.get("status", {})],
                 "unit": unit_of(result.plan.settings.input.source),
-                "rows": quality_rows(result, collector),
-                "pictures": list(pictures(result, collector)),
+                "pictures": pictures(result.last, result.timeline, collector),
                 "seconds": collector.seconds,
+                "motion_seconds": collector.motion_seconds,
             }
         )
-    page = render("report.html.j2", content=content, sections=sections)
-    several = len(sections) > 1
-    files = {}
-    possible: set[str] = set()
-    for section in sections:
-        prefix = re.sub(r"[^\w.-]+", "_", section["joint"]) + "_" if several else ""
-        files.update({prefix + picture.name: picture.png for picture in section["pictures"]})
-        possible.update(prefix + name for name in PICTURE_NAMES)
-    return write_files(folder, page, files, outdated=possible - set(files))
+    return write_page(folder, "report.html.j2", content, sections, PICTURE_NAMES)
 
 
-def write_files(folder: Path, page: str, files: Mapping[str, bytes], *, outdated: Iterable[str] = ()) -> Path:
-    """Write a page and pictures into a folder; return the page's path.
+def write_page(
+    folder: Path, template: str, content: Mapping[str, Any], sections: Sequence[Mapping[str, Any]], names: Sequence[str]
+) -> Path:
+    """Fill in one of the package's page templates; write the page and its sections' pictures into a folder.
 
-    Pictures of an earlier report that this one does not have (`outdated`) are taken away: they would seem to belong.
+    Pictures of these `names` that an earlier report left and this one does not have are taken away: they would seem
+    to belong.
+
+    Returns
+    -------
+    Path
+        The page.
 
     Raises
     ------
     ParameterError
         If the folder cannot be written.
     """
+    environment = Environment(
+        loader=PackageLoader("hd_monitor.offline.report", "."),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters["data_uri"] = lambda png: "data:image/png;base64," + base64.b64encode(png).decode("ascii")
     path = folder / PAGE
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        path.write_text(page, encoding="utf-8")
-        for name, png in files.items():
-            (folder / f"{name}.png").write_bytes(png)
-        for name in outdated:
-            (folder / f"{name}.png").unlink(missing_ok=True)
+        path.write_text(environment.get_template(template).render(content=content, sections=sections), encoding="utf-8")
+        for section in sections:
+            prefix = re.sub(r"[^\w.-]+", "_", section["joint"]) + "_" if len(sections) > 1 else ""
+            for name in names:
+                picture = folder / f"{prefix}{name}.png"
+                if name in section["pictures"]:
+                    picture.write_bytes(section["pictures"][name])
+                else:
+                    picture.unlink(missing_ok=True)
     except OSError as error:
         raise ParameterError(f"{folder} cannot be written: {error.strerror}; choose another folder") from None
     return path

@@ -1,58 +1,32 @@
-"""Which pictures a joint's report has, each with its caption; one that the recording does not carry is left out."""
+"""Which pictures a joint's report has; one that the recording does not carry is left out. The page captions them."""
 
-from collections.abc import Callable, Iterator
-from typing import Any, NamedTuple
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
 
+from ...acquisition.record import Record
 from ...assessment import Assessment
-from ...reducer import LinePair
+from ...reducer import LinePair, Reducer
 from ..plots.indexes import indexes_plot
 from ..plots.line_amplitudes import lines_plot
-from ..plots.order_map import order_map_plot
-from ..plots.order_spectrum import order_plot
-from ..plots.phase_trace import phase_plot
+from ..plots.maps import order_map_plot, waterfall_plot
 from ..plots.rms_curve import rms_plot
-from ..plots.spectrum import spectrum_plot
+from ..plots.spectra import order_plot, phase_plot, spectrum_plot
 from ..plots.style import png
 from ..plots.verdict_picture import verdict_picture
-from ..plots.waterfall import waterfall_plot
-from ..result import JointResult
 from .collector import Collector
 from .phase_trace import phase_trace
 from .spectra import amplitude_spectrum, order_spectrum
 
+FEWEST_SPEEDS = 3
+"""Speeds from which on something is drawn over speed."""
 _ORDERS_SHOWN = 1201
 _PARTING_TRAVEL = 360.0
 """Output travel [°] that parts the first pair under a Hann window."""
-_FEWEST_SPEEDS = 3
-"""Speeds from which on something is drawn over speed."""
 _UNITS = {"joint_effort": "effort, as reported", "joint_velocity": "rad/s"}
-
-
-class Picture(NamedTuple):
-    """A picture of a report."""
-
-    name: str
-    title: str
-    caption: str
-    png: bytes
-
-
-def verdict_title(assessment: Assessment) -> str:
-    """Write the verdict as a title: the first sentence of its reason."""
-    return assessment.verdict.reason.partition(";")[0]
-
-
-def pictures(result: JointResult, collector: Collector) -> Iterator[Picture]:
-    """Yield a joint's pictures, the verdict's first."""
-    if result.last is None:
-        return
-    for name, title, caption, draw in _PICTURES:
-        figure = draw(result.last, result.timeline, collector)
-        if figure is not None:
-            yield Picture(name, title, caption, png(figure))
 
 
 def unit_of(source: str) -> str:
@@ -60,181 +34,141 @@ def unit_of(source: str) -> str:
     return _UNITS.get(source, "rad/s²")
 
 
-def speed_of(assessment: Assessment) -> float:
-    """Mean wave-generator speed [rpm] of an assessment's steady stretch; 0 if it has none."""
-    steady = assessment.steady
-    return 0.0 if steady is None else _rpm(assessment, float(steady.speed.mean()))
+def pair_speeds(reducer: Reducer, natural_frequency: float, harmonics: int) -> list[tuple[float, str]]:
+    """Wave-generator speeds [rpm] at which the pairs k = 1, 2, … meet the natural frequency [Hz], and their names."""
+    first = 60.0 * natural_frequency / reducer.circular_spline_order
+    return [(first / k, f"k = {k}") for k in range(1, harmonics + 1)]
 
 
-def critical_speeds(assessment: Assessment, natural_frequency: float, harmonics: int) -> list[float]:
-    """Wave-generator speeds [rpm] at which the pairs k = 1, 2, … meet the natural frequency."""
-    order = assessment.reducer.circular_spline_order
-    return [60.0 * natural_frequency / (order * k) for k in range(1, harmonics + 1)]
+def pictures(last: Assessment | None, timeline: Sequence[dict[str, Any]], collector: Collector) -> dict[str, bytes]:
+    """Return a joint's pictures as PNG by their names, in the order of the page."""
+    if last is None:
+        return {}
+    view = _View(last, timeline, collector)
+    drawn = {name: draw(view) for name, draw in _PICTURES.items()}
+    return {name: png(figure) for name, figure in drawn.items() if figure is not None}
 
 
-def _rpm(assessment: Assessment, output_speed: float) -> float:
-    return abs(output_speed) * assessment.reducer.reduction * 30.0 / np.pi
+@dataclass(frozen=True, slots=True)
+class _View:
+    """What the pictures are drawn from: the last assessment, the JSON's timeline and what was collected."""
+
+    last: Assessment
+    timeline: Sequence[dict[str, Any]]
+    collector: Collector
+
+    @property
+    def harmonics(self) -> int:
+        return self.collector.settings.analysis.harmonics
+
+    @property
+    def natural_frequency(self) -> float:
+        """The one found [Hz], or else the one given."""
+        found = self.last.identification.natural_frequency if self.last.identification else float("nan")
+        return found if np.isfinite(found) else self.collector.settings.dynamics.natural_frequency
+
+    @property
+    def pair_speeds(self) -> list[tuple[float, str]]:
+        return pair_speeds(self.last.reducer, self.natural_frequency, self.harmonics)
+
+    @property
+    def steady(self) -> Record | None:
+        """The stretch that shows the lines best."""
+        return self.collector.best.steady if self.collector.best is not None else None
+
+    @property
+    def rpm(self) -> float:
+        """Mean wave-generator speed of that stretch [rpm]; 0 without one."""
+        mean = 0.0 if self.steady is None else float(self.steady.speed.mean())
+        return abs(mean) * self.last.reducer.reduction * 30.0 / np.pi
 
 
-def _natural_frequency(last: Assessment, collector: Collector) -> float:
-    found = last.identification.natural_frequency if last.identification else float("nan")
-    return found if np.isfinite(found) else collector.settings.dynamics.natural_frequency
-
-
-def _zoom(last: Assessment, timeline: list[dict[str, Any]], collector: Collector) -> Figure | None:
-    if collector.zoom is None or collector.best is None:
+def _zoom(view: _View) -> Figure | None:
+    if view.collector.zoom is None:
         return None
-    subtitle = f"zoom spectrum at {speed_of(collector.best):.0f} rpm"
-    return verdict_picture(collector.zoom, title=verdict_title(last), subtitle=subtitle)
+    first_sentence = view.last.verdict.reason.partition(";")[0]
+    return verdict_picture(view.collector.zoom, title=first_sentence, subtitle=f"zoom spectrum at {view.rpm:.0f} rpm")
 
 
-def _orders(last: Assessment, timeline: list[dict[str, Any]], collector: Collector) -> Figure | None:
-    angle, values = collector.tail()
+def _orders(view: _View) -> Figure | None:
+    angle, values = view.collector.tail()
     if angle.size < 100:
         return None
-    k = last.strongest_pair
-    orders = last.reducer.output_orders
-    pair = LinePair(k * orders.circular_spline, k * orders.flexspline)
+    k = view.last.strongest_pair
+    pair = LinePair(*(k * order for order in view.last.reducer.output_orders))
     margin = 4.0 * (pair.flexspline - pair.circular_spline)
     axis = np.linspace(pair.circular_spline - margin, pair.flexspline + margin, _ORDERS_SHOWN)
     spectrum = order_spectrum(angle, values, axis)
-    unit = unit_of(collector.settings.input.source)
+    unit = unit_of(view.collector.settings.input.source)
     travel = float(np.degrees(np.ptp(angle)))
     # A Hann window parts lines that are two of its cycles apart; the pair is 2k cycles apart in a revolution.
     note = "" if travel * k >= _PARTING_TRAVEL else f"{travel:.0f}° of travel do not part the lines"
     return order_plot(spectrum, pair, title=f"Order spectrum, line pair k = {k}", unit=unit, note=note)
 
 
-def _spectrum(last: Assessment, timeline: list[dict[str, Any]], collector: Collector) -> Figure | None:
-    best = collector.best
-    steady = best.steady if best is not None else None
-    if best is None or steady is None:
+def _spectrum(view: _View) -> Figure | None:
+    if view.steady is None:
         return None
-    rpm = speed_of(best)
-    pairs = [last.reducer.line_frequencies(rpm, k) for k in range(1, collector.settings.analysis.harmonics + 1)]
-    return spectrum_plot(
-        amplitude_spectrum(steady),
-        pairs,
-        title=f"Spectrum at {rpm:.0f} rpm",
-        natural_frequency=_natural_frequency(last, collector),
-    )
+    pairs = [view.last.reducer.line_frequencies(view.rpm, k) for k in range(1, view.harmonics + 1)]
+    title = f"Spectrum at {view.rpm:.0f} rpm"
+    return spectrum_plot(amplitude_spectrum(view.steady), pairs, title=title, natural_frequency=view.natural_frequency)
 
 
-def _map(last: Assessment, timeline: list[dict[str, Any]], collector: Collector) -> Figure | None:
-    order_map = collector.order_map.result()
-    if order_map is None or order_map.speeds.size < _FEWEST_SPEEDS:
+def _map(view: _View) -> Figure | None:
+    order_map = view.collector.order_map.result()
+    if order_map is None or order_map.speeds.size < FEWEST_SPEEDS:
         return None
-    return order_map_plot(
-        order_map, natural_frequency=_natural_frequency(last, collector), title="Vibration over order and speed"
-    )
+    return order_map_plot(order_map, natural_frequency=view.natural_frequency, title="Vibration over order and speed")
 
 
-def _waterfall(last: Assessment, timeline: list[dict[str, Any]], collector: Collector) -> Figure | None:
-    waterfall = collector.waterfall.result()
+def _waterfall(view: _View) -> Figure | None:
+    waterfall = view.collector.waterfall.result()
     return waterfall_plot(waterfall, title="Vibration over frequency and time") if waterfall is not None else None
 
 
-def _rms(last: Assessment, timeline: list[dict[str, Any]], collector: Collector) -> Figure | None:
-    if len(last.rms_curve.bins) < _FEWEST_SPEEDS:
+def _rms(view: _View) -> Figure | None:
+    bins, speeds = view.last.rms_curve.bins, view.pair_speeds
+    if len(bins) < FEWEST_SPEEDS:
         return None
-    return rms_plot(last.rms_curve.bins, critical=_critical(last, collector), title="Vibration over speed")
+    critical = [*speeds, (2.0 * speeds[0][0], "principal instability")]
+    return rms_plot(bins, critical=critical, title="Vibration over speed")
 
 
-def _critical(last: Assessment, collector: Collector) -> list[tuple[float, str]]:
-    speeds = critical_speeds(last, _natural_frequency(last, collector), collector.settings.analysis.harmonics)
-    named = [(speed, f"k = {k}") for k, speed in enumerate(speeds, start=1)]
-    return [*named, (2.0 * speeds[0], "principal instability")]
-
-
-def _lines(last: Assessment, timeline: list[dict[str, Any]], collector: Collector) -> Figure | None:
-    lines = collector.lines.result()
-    if len({line.rpm for line in lines}) < _FEWEST_SPEEDS:
+def _lines(view: _View) -> Figure | None:
+    lines = view.collector.lines.result()
+    if len({line.rpm for line in lines}) < FEWEST_SPEEDS:
         return None
-    harmonics = collector.settings.analysis.harmonics
-    resonances = critical_speeds(last, _natural_frequency(last, collector), harmonics)
+    resonances = [speed for speed, _ in view.pair_speeds]
     return lines_plot(lines, resonances=resonances, title="Line amplitudes over speed")
 
 
-def _indexes(last: Assessment, timeline: list[dict[str, Any]], collector: Collector) -> Figure | None:
-    if all(entry["flexspline_index"] is None for entry in timeline):
+def _indexes(view: _View) -> Figure | None:
+    if all(entry["flexspline_index"] is None for entry in view.timeline):
         return None
+    last = view.last
     relative = bool(last.identification and last.identification.relative)
     title = "Relative indexes over time" if relative else "Stiffness indexes over time"
-    return indexes_plot(timeline, warn=last.warn_limit, error=last.error_limit, relative=relative, title=title)
+    return indexes_plot(view.timeline, warn=last.warn_limit, error=last.error_limit, relative=relative, title=title)
 
 
-def _phase(last: Assessment, timeline: list[dict[str, Any]], collector: Collector) -> Figure | None:
-    best = collector.best
-    steady = best.steady if best is not None else None
-    trace = phase_trace(steady, last.reducer) if steady is not None else None
+def _phase(view: _View) -> Figure | None:
+    trace = phase_trace(view.steady, view.last.reducer) if view.steady is not None else None
     if trace is None:
         return None
     return phase_plot(trace, title=f"Phase trace at {trace.rpm:.0f} rpm, {trace.band[0]:.0f}–{trace.band[1]:.0f} Hz")
 
 
-_Draw = Callable[[Assessment, list[dict[str, Any]], Collector], Figure | None]
+_PICTURES: dict[str, Callable[[_View], Figure | None]] = {
+    "zoom_spectrum": _zoom,
+    "indexes": _indexes,
+    "order_spectrum": _orders,
+    "spectrum": _spectrum,
+    "order_map": _map,
+    "waterfall": _waterfall,
+    "rms_curve": _rms,
+    "line_amplitudes": _lines,
+    "phase_trace": _phase,
+}
+"""The verdict's first."""
 
-_PICTURES: tuple[tuple[str, str, str, _Draw], ...] = (
-    (
-        "zoom_spectrum",
-        "Zoom spectrum",
-        "The two characteristic lines of the strongest pair at a steady speed. The left one belongs to the circular "
-        "spline, the right one to the flexspline. Near a resonance their heights alone do not tell which spline is "
-        "worse: the verdict rests on the indexes.",
-        _zoom,
-    ),
-    (
-        "indexes",
-        "Indexes over time",
-        "Stiffness fluctuation that each spline causes, with its 95 % band, as the evidence grew.",
-        _indexes,
-    ),
-    (
-        "order_spectrum",
-        "Spectrum over the joint's angle",
-        "The last minutes of the recording over cycles per output revolution: at changing speed and in strokes the "
-        "lines stay at their orders.",
-        _orders,
-    ),
-    (
-        "spectrum",
-        "Spectrum",
-        "The whole spectrum at the same steady speed, with the characteristic pairs k = 1, 2, ….",
-        _spectrum,
-    ),
-    (
-        "order_map",
-        "Order map",
-        "What stays at its order turns with the drive; what follows the dotted curve is the natural frequency.",
-        _map,
-    ),
-    (
-        "waterfall",
-        "Waterfall",
-        "Spectra one after the other: what moves sideways follows the speed, what stands still is a resonance or "
-        "comes from elsewhere.",
-        _waterfall,
-    ),
-    (
-        "rms_curve",
-        "RMS over speed",
-        "The property curve: RMS of the tangential vibration at the sensor. At the dotted speeds a line pair meets the "
-        "natural frequency, or the reducer is nearest to parametric instability.",
-        _rms,
-    ),
-    (
-        "line_amplitudes",
-        "Line amplitudes over speed",
-        "Both lines of each pair by regression on the joint's angle, with standard deviations.",
-        _lines,
-    ),
-    (
-        "phase_trace",
-        "Phase trace",
-        "Velocity over displacement of the torsional vibration, integrated in the band named: rings that wander are "
-        "quasi-periodic, as two close lines make them.",
-        _phase,
-    ),
-)
-
-PICTURE_NAMES = tuple(name for name, *_ in _PICTURES)
+PICTURE_NAMES = tuple(_PICTURES)
