@@ -19,6 +19,9 @@ def trigger(peer: Any, service: str) -> Any:
 
 
 def feed_until(bench: Bench, feeder: Feeder, samples: int) -> None:
+    # What comes before both topics are heard has no like on the other one, and the monitor waits for it in vain.
+    bench.until(feeder.matched, "the monitor's subscriptions")
+
     def counted() -> bool:
         feeder.send(2)
         return bool(bench.statuses) and bench.statuses[-1].number("samples") >= samples

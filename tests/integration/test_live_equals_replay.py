@@ -40,6 +40,8 @@ RIG_PARAMETERS = (
     "joint_states.loss:=0.01",
     "joint_states.jitter:=0.0001",
 )
+PACES = {"block": 5.0, "samples": 3.0}
+"""Simulated seconds in a second; one message a sample is three thousand a second."""
 
 
 class Recorder:
@@ -102,7 +104,7 @@ def test_every_live_status_is_replayed_value_by_value(
     sources = list(split_joints(load_parameters(parameters))["joint"].sources.values())
     recorder = Recorder(peer, sources)
     start_module(MONITOR, "--ros-args", "--params-file", str(parameters))
-    rig = start_module(RIG, *arguments_of((*RIG_PARAMETERS, f"publish:={publish}", "time_scale:=2.0")))
+    rig = start_module(RIG, *arguments_of((*RIG_PARAMETERS, f"publish:={publish}", f"time_scale:={PACES[publish]}")))
 
     # A publisher that has found a subscriber may not yet have been found by it. What it sends in that time comes later,
     # on one topic perhaps seconds later than on the other; the node then rightly gives up waiting, of which a recording

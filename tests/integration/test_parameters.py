@@ -79,23 +79,19 @@ def test_limits_change_at_run_time(bench: Bench, peer: Any, feeder: Feeder) -> N
     bench.until(in_force, "the new limit in a status")
 
 
-@pytest.mark.parametrize(
-    ("name", "value", "reason"),
-    [
+def test_what_cannot_be_is_rejected_with_the_reason(bench: Bench, peer: Any) -> None:
+    bench.monitor()
+    for name, value, reason in (
         ("diagnosis.warn_index", 0.5, "an error must be worse than a warning"),
         ("diagnosis.warn_index", 5.0, "range"),
         ("diagnosis.confirm_count", 50, "can never be reached"),
         ("reducer.flexspline_teeth", 200, "read-only"),
         ("diagnosis.latch", "yes", "type"),
-    ],
-)
-def test_what_cannot_be_is_rejected_with_the_reason(
-    bench: Bench, peer: Any, name: str, value: Any, reason: str
-) -> None:
-    bench.monitor()
-    result = set_parameter(peer, "hd_monitor_node", name, value)
-    assert not result.successful
-    assert reason in result.reason.lower()
+    ):
+        result = set_parameter(peer, "hd_monitor_node", name, value)
+        assert not result.successful, (name, value)
+        assert reason in result.reason.lower()
+    bench.forget()
     bench.until(lambda: bench.statuses, "a status: the node lives on")
 
 

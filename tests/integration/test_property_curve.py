@@ -74,7 +74,7 @@ def test_figure_16_through_the_nodes_is_the_models_curve_within_2_per_cent(bench
 
     curves = peer.collect(Float64MultiArray, "rms_curve", depth=10, match=False)
     bench.monitor(*MONITOR)
-    bench.rig(*(f"{name}:={value}" for name, value in RIG.items()), "time_scale:=12.0", "wait_for_subscribers:=1")
+    bench.rig(*(f"{name}:={value}" for name, value in RIG.items()), "time_scale:=30.0", "wait_for_subscribers:=1")
 
     def counts() -> list[float]:
         """Samples in each speed bin so far."""

@@ -54,7 +54,7 @@ def test_two_joints_with_different_reducers(bench: Bench, peer: Any) -> None:
 
 
 def test_one_joint_without_input_leaves_the_other_alone(bench: Bench) -> None:
-    bench.monitor("joints:=[shoulder, elbow]", "input.timeout:=30.0")
+    bench.monitor("joints:=[shoulder, elbow]", "shoulder.input.timeout:=2.0")
     rig_of(bench, "elbow", "defect:=flexspline")
     assert of(bench, "elbow").component == "flexspline"
     lost = bench.until_status(

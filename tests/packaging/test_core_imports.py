@@ -17,14 +17,32 @@ ROOT = Path(__file__).resolve().parents[2]
 
 REPORT_LOADED = """
 import importlib, json, sys
-before = set(sys.modules)
-for module in sys.argv[1:]:
-    importlib.import_module(module)
-# A module without a spec was not imported: compiled code makes such ones for its own needs.
-loaded = [name for name, module in sys.modules.items() if getattr(module, "__spec__", None) and name not in before]
-top = {name.partition(".")[0] for name in loaded}
-print(json.dumps(sorted(top - set(sys.stdlib_module_names))))
+
+def report(modules):
+    before = set(sys.modules)
+    for module in modules:
+        importlib.import_module(module)
+    # A module without a spec was not imported: compiled code makes such ones for its own needs.
+    loaded = [name for name, module in sys.modules.items() if getattr(module, "__spec__", None) and name not in before]
+    top = {name.partition(".")[0] for name in loaded}
+    print(json.dumps(sorted(top - set(sys.stdlib_module_names))), flush=True)
 """
+TOGETHER = REPORT_LOADED + "report(sys.argv[1:])"
+# A fork is as fresh as a new interpreter, but for numpy and scipy, whose import is most of a new one's time.
+ONE_BY_ONE = (
+    REPORT_LOADED
+    + """
+import os
+import numpy, scipy.interpolate, scipy.signal
+for module in sys.argv[1:]:
+    child = os.fork()
+    if not child:
+        report([module])
+        os._exit(0)
+    if os.waitpid(child, 0)[1]:
+        sys.exit(f"cannot be imported alone: {module}")
+"""
+)
 
 
 def core_modules() -> list[str]:
@@ -37,14 +55,14 @@ def core_modules() -> list[str]:
     return names
 
 
-def third_party_packages_loaded_by(*modules: str) -> set[str]:
-    """Import `modules` in a fresh interpreter and return the top-level packages that this loads."""
+def loaded_in(script: str, *modules: str) -> list[set[str]]:
+    """Run a probe in a fresh interpreter; return the top-level packages that it loads, one set per printed line."""
     done = subprocess.run(
-        [sys.executable, "-c", REPORT_LOADED, *modules], capture_output=True, text=True, timeout=120, check=False
+        [sys.executable, "-c", script, *modules], capture_output=True, text=True, timeout=120, check=False
     )
     assert done.returncode == 0, done.stderr
     # A compiled module may import its internals under names that start with an underscore.
-    return {name for name in json.loads(done.stdout) if not name.startswith("_")}
+    return [{name for name in json.loads(line) if not name.startswith("_")} for line in done.stdout.splitlines()]
 
 
 def modules_named_in(source: str) -> set[str]:
@@ -89,14 +107,18 @@ def test_the_core_is_found() -> None:
 
 
 def test_whole_core_loads_numpy_and_scipy_only() -> None:
-    assert third_party_packages_loaded_by(*core_modules()) <= ALLOWED
+    (packages,) = loaded_in(TOGETHER, *core_modules())
+    assert packages <= ALLOWED
 
 
-def test_the_probe_sees_a_foreign_package() -> None:
-    assert "pytest" in third_party_packages_loaded_by("pytest")
+@pytest.mark.parametrize("script", [TOGETHER, ONE_BY_ONE], ids=["together", "one by one"])
+def test_the_probe_sees_a_foreign_package(script: str) -> None:
+    (packages,) = loaded_in(script, "pytest")
+    assert "pytest" in packages
 
 
-@pytest.mark.parametrize("module", core_modules())
-def test_each_core_module_imports_alone(module: str) -> None:
+def test_each_core_module_imports_alone() -> None:
     # Alone, in no particular order: a circular import or one hidden behind another module's shows here.
-    assert third_party_packages_loaded_by(module) <= ALLOWED
+    modules = core_modules()
+    for module, packages in zip(modules, loaded_in(ONE_BY_ONE, *modules), strict=True):
+        assert packages <= ALLOWED, module

@@ -12,7 +12,7 @@ import pytest
 pytestmark = pytest.mark.ros
 
 COMMAND = "hd_monitor.cli.main"
-SHORT = ("--time-scale", "10", "--sim", "dwell.first:=400.0", "--sim", "dwell.last:=900.0")
+SHORT = ("--time-scale", "20", "--sim", "dwell.first:=400.0", "--sim", "dwell.last:=900.0")
 Start = Callable[..., Any]
 
 
