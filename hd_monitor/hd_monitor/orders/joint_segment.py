@@ -13,7 +13,7 @@ from ..arrays import BoolArray, FloatArray
 from .regression import line_columns
 
 LOWEST_FREQUENCY = 3.0
-"""Hz of the first line below which friction and gravity are not told from it any more."""
+"""Hz of the first line below which it cannot be distinguished from friction and gravity."""
 
 HIGHEST_SHARE = 0.45
 """Highest line frequency used, as a part of the sampling rate; a line at half of it is its own alias."""
@@ -34,7 +34,7 @@ GAP = 2.5
 """Sample periods between two messages above which something is missing."""
 
 ONE_SPEED = 0.1
-"""Part of the speed by which the middle half of all rows must differ for the speed to count as varied."""
+"""Part of the speed over which the middle half of all rows must spread for the speed to count as varied."""
 
 SPEED_SPAN = 0.04
 """s over which speed is taken from positions where messages carry none."""
@@ -156,12 +156,12 @@ class JointSegmentCutter:
         return segments
 
     def finish(self) -> list[JointSegment]:
-        """Return the segment that is still open, if it is worth one: no more messages will come."""
+        """Return the segment that is still open, if it is long enough: no more messages will come."""
         rows, self._pending, self._recent = self._pending, np.empty((0, 4)), np.empty((0, 4))
         return self._close(rows) if len(rows) and abs(rows[0, 2]) >= self._minimum else []
 
     def _close(self, rows: FloatArray) -> list[JointSegment]:
-        """The segment of these rows, if it is worth one, less those in which the lines are too fast for the rate."""
+        """Return the segment of these rows, without those in which the lines are too fast for the rate, if any."""
         if len(rows) < SHORTEST:
             return []
         if self._period is None:
@@ -172,10 +172,7 @@ class JointSegmentCutter:
         limit = HIGHEST_SHARE / (period * averaged) * math.tau / self._lowest
         fast = np.abs(rows[:, 2]) > limit
         self.too_fast += float(np.count_nonzero(fast)) * period
-        if np.count_nonzero(~fast) < SHORTEST * averaged:
-            return []
-        segment = _segment(rows, ~fast, period, averaged)
-        return [] if segment is None else [segment]
+        return _segments(rows, ~fast, period, averaged)
 
 
 def samples_of_records(records: Iterable[Record]) -> JointSamples:
@@ -203,8 +200,8 @@ def _speeds(rows: FloatArray) -> FloatArray:
     return speed
 
 
-def _segment(rows: FloatArray, good: BoolArray, period: float, averaged: int) -> JointSegment | None:
-    """One segment of the good rows, averaged in groups that do not reach over gaps."""
+def _segments(rows: FloatArray, good: BoolArray, period: float, averaged: int) -> list[JointSegment]:
+    """Make a segment of the good rows, averaged in groups that do not span gaps; none if they are too few."""
     place = np.flatnonzero(good)
     apart = np.diff(rows[place, 0]) > GAP * period
     starts = np.concatenate([[True], apart | (np.diff(place) > 1)])
@@ -212,9 +209,9 @@ def _segment(rows: FloatArray, good: BoolArray, period: float, averaged: int) ->
     group = np.flatnonzero(within % averaged == 0)
     whole = group[np.diff(np.append(group, place.size)) == averaged]
     if whole.size < SHORTEST:
-        return None
+        return []
     _, angle, pace, values = rows[place[whole[:, None] + np.arange(averaged)]].mean(axis=1).T
-    return JointSegment(
+    segment = JointSegment(
         direction=1 if float(pace.mean()) > 0.0 else -1,
         angle=angle,
         speed=np.abs(pace),
@@ -224,15 +221,16 @@ def _segment(rows: FloatArray, good: BoolArray, period: float, averaged: int) ->
         averaged=averaged,
         rate=1.0 / (period * averaged),
     )
+    return [segment]
 
 
 def one_speed(segments: Iterable[JointSegment]) -> float:
     """Output speed [rad/s] if nearly all of the motion was at one; NaN if it varied.
 
-    At one speed a fixed frequency of the machine, or a tone of its supply, is no different from a line.
+    At one speed a fixed frequency of the machine, or a tone of its supply, looks the same as a line.
     """
     speeds = [segment.speed for segment in segments]
     if not speeds:
-        return float("nan")
+        return math.nan
     low, middle, high = np.percentile(np.concatenate(speeds), [25.0, 50.0, 75.0]).tolist()
-    return float(middle) if high - low < ONE_SPEED * middle else float("nan")
+    return float(middle) if high - low < ONE_SPEED * middle else math.nan

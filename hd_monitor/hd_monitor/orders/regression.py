@@ -5,9 +5,7 @@ products of columns: those of the lines wanted, of the lines fitted along, of re
 and of the signal (:class:`Products`). They add up over data; :func:`solve` is the one place where they are solved.
 """
 
-import functools
 import math
-import operator
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
@@ -54,13 +52,6 @@ class Products:
     rows: int
     noise: float = 1.0
 
-    def __add__(self, other: "Products") -> "Products":
-        """Return the products of both data together, coherent in the absolute angle."""
-        rows = self.rows + other.rows
-        weight = self.rows / self.noise**2 + other.rows / other.noise**2
-        noise = math.sqrt(rows / weight)
-        return Products(orders=self.orders, matrix=self.matrix + other.matrix, rows=rows, noise=noise)
-
     def places(self, orders: FloatArray) -> IntArray:
         """Where some orders, shape (N,), are among those held; -1 for those that are not."""
         distance = np.abs(np.subtract.outer(orders, self.orders))
@@ -68,10 +59,16 @@ class Products:
 
 
 def pool(parts: Iterable[Products]) -> Products | None:
-    """Add up products for the same orders; None if there are none."""
-    parts = iter(parts)
-    first = next(parts, None)
-    return None if first is None else functools.reduce(operator.add, parts, first)
+    """Add up products for the same orders, coherently in the absolute angle; None if there are none."""
+    total: Products | None = None
+    for part in parts:
+        if total is None:
+            total = part
+            continue
+        rows = total.rows + part.rows
+        noise = math.sqrt(rows / (total.rows / total.noise**2 + part.rows / part.noise**2))
+        total = Products(orders=total.orders, matrix=total.matrix + part.matrix, rows=rows, noise=noise)
+    return total
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)

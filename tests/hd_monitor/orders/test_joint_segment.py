@@ -44,18 +44,18 @@ def cut(whole, source="joint_effort", orders=ORDERS, minimum=0.03):
     return cutter.add(whole) + cutter.finish()
 
 
-def test_strokes_keep_to_one_direction_and_alternate():
-    strokes = cut(swinging())
-    assert [stroke.direction for stroke in strokes] == [1, -1, 1, -1, 1, -1, 1]
-    for stroke in strokes:
-        assert np.all(stroke.direction * np.diff(stroke.angle) > 0.0)
-        assert stroke.speed.min() >= LOWEST_FREQUENCY * math.tau / 202.0
-        assert stroke.duration <= LONGEST
+def test_segments_keep_to_one_direction_and_alternate():
+    segments = cut(swinging())
+    assert [segment.direction for segment in segments] == [1, -1, 1, -1, 1, -1, 1]
+    for segment in segments:
+        assert np.all(segment.direction * np.diff(segment.angle) > 0.0)
+        assert segment.speed.min() >= LOWEST_FREQUENCY * math.tau / 202.0
+        assert segment.duration <= LONGEST
 
 
 @settings(max_examples=40)
 @given(st.lists(st.integers(0, 4000), max_size=12), st.booleans(), st.sampled_from([100.0, 500.0]))
-def test_the_strokes_do_not_depend_on_how_the_messages_are_chunked(cuts, with_speed, rate):
+def test_the_segments_do_not_depend_on_how_the_messages_are_chunked(cuts, with_speed, rate):
     whole = swinging(rate, 20.0, with_speed=with_speed)
     expected = cut(whole)
     cutter, found = JointSegmentCutter("joint_effort", ORDERS, 0.03), []
@@ -71,23 +71,23 @@ def test_the_strokes_do_not_depend_on_how_the_messages_are_chunked(cuts, with_sp
 
 def test_an_endless_rotation_is_cut_into_pieces():
     times = np.arange(0.0, 20.0, 0.01)
-    strokes = cut(samples(times, np.full(times.size, 0.5)))
-    assert [round(stroke.duration) for stroke in strokes] == [6, 6, 6, 2]
-    assert sum(stroke.values.size for stroke in strokes) == times.size
+    segments = cut(samples(times, np.full(times.size, 0.5)))
+    assert [round(segment.duration) for segment in segments] == [6, 6, 6, 2]
+    assert sum(segment.values.size for segment in segments) == times.size
 
 
 def test_lines_above_nyquist_are_left_out_and_counted():
     times = np.arange(0.0, 30.0, 0.01)
     speed = 0.3 + 0.1 * times  # up to 3.3 rad/s: 105 Hz at 100 Hz
     cutter = JointSegmentCutter("joint_effort", ORDERS, 0.03)
-    strokes = cutter.add(samples(times, speed)) + cutter.finish()
+    segments = cutter.add(samples(times, speed)) + cutter.finish()
     limit = HIGHEST_SHARE * 100.0 * math.tau / 200.0
-    assert max(stroke.speed.max() for stroke in strokes) <= limit
+    assert max(segment.speed.max() for segment in segments) <= limit
     assert cutter.too_fast == pytest.approx(30.0 - (limit - 0.3) / 0.1, abs=0.2)
     assert cutter.turning == pytest.approx(30.0, abs=0.1)
 
 
-def test_missing_messages_start_a_new_run_but_no_new_stroke():
+def test_missing_messages_start_a_new_run_but_not_a_new_segment():
     whole = swinging()
     keep = np.ones(len(whole), dtype=bool)
     keep[100:105] = False
@@ -97,7 +97,7 @@ def test_missing_messages_start_a_new_run_but_no_new_stroke():
 
 
 @pytest.mark.parametrize("pause", [0.6, 5.0])
-def test_a_long_pause_ends_a_stroke(pause):
+def test_a_long_pause_ends_a_segment(pause):
     times = np.arange(0.0, 4.0, 0.01)
     times[200:] += pause
     assert len(cut(samples(times, np.full(times.size, 0.5)))) == 2
@@ -111,7 +111,7 @@ def test_rows_without_the_signal_are_left_out():
     assert first.values.size == cut(swinging())[0].values.size - 10
 
 
-def test_speed_comes_from_the_positions_where_there_is_none():
+def test_missing_speeds_follow_from_the_positions():
     known, unknown = cut(swinging()), cut(swinging(with_speed=False))
     assert len(known) == len(unknown)
     for one, other in zip(known, unknown, strict=True):
@@ -122,23 +122,23 @@ def test_speed_comes_from_the_positions_where_there_is_none():
 
 
 @pytest.mark.parametrize("rate", [500.0, 1000.0, 2000.0])
-def test_fast_samples_are_averaged_and_the_columns_know(rate):
+def test_fast_samples_are_averaged_and_the_columns_allow_for_it(rate):
     whole = swinging(rate)
-    strokes = cut(whole)
-    assert strokes[0].averaged == int(rate / 250.0)
-    for stroke in strokes:
+    segments = cut(whole)
+    assert segments[0].averaged == int(rate / 250.0)
+    for segment in segments:
         # The signal is cos(200 angle) exactly, so the column must be the averaged signal.
-        np.testing.assert_allclose(stroke.columns([200.0])[:, 0], stroke.values, atol=1e-3)
-        assert np.abs(np.cos(200.0 * stroke.angle) - stroke.values).max() > 0.01
+        np.testing.assert_allclose(segment.columns([200.0])[:, 0], segment.values, atol=1e-3)
+        assert np.abs(np.cos(200.0 * segment.angle) - segment.values).max() > 0.01
 
 
-def test_averages_do_not_reach_over_gaps():
+def test_averages_do_not_span_gaps():
     whole = swinging(1000.0)
     keep = np.ones(len(whole), dtype=bool)
     keep[300:302] = False
     keep[500:600] = False
-    for stroke in cut(part(whole, keep)):
-        np.testing.assert_allclose(stroke.columns([200.0])[:, 0], stroke.values, atol=2e-2)
+    for segment in cut(part(whole, keep)):
+        np.testing.assert_allclose(segment.columns([200.0])[:, 0], segment.values, atol=2e-2)
 
 
 @pytest.mark.parametrize("with_speed", [True, False])
@@ -187,7 +187,7 @@ def test_one_speed_is_recognised():
     assert math.isnan(one_speed([]))
 
 
-def test_nothing_comes_of_nothing():
+def test_no_samples_make_no_segments():
     cutter = JointSegmentCutter("joint_effort", ORDERS, 0.03)
     assert cutter.add(part(swinging(), slice(0, 0))) == []
     assert cutter.add(part(swinging(), slice(0, 1))) == []

@@ -42,7 +42,7 @@ def fit(found, orders=ORDERS):
     return solve(pooled(found, orders), orders)
 
 
-def test_reference_orders_are_beside_the_pair_and_off_the_motor():
+def test_reference_orders_are_beside_the_pair_and_away_from_the_motor():
     assert ORDERS.nuisance.tolist() == [101.0]  # twice the motor's order is the flexspline's own line in this mount
     assert len(ORDERS.reference_orders) == 24
     assert np.abs(np.subtract.outer(ORDERS.reference_orders, PAIR)).min() == pytest.approx(2.0)
@@ -65,7 +65,7 @@ def test_finds_phasors_under_friction_and_gravity():
     assert found.noise == pytest.approx(0.02, rel=0.1)
 
 
-def test_errors_are_as_large_as_claimed():
+def test_errors_follow_the_covariance():
     rng = np.random.default_rng(2)
     pulls, floors = [], []
     for _ in range(150):
@@ -88,7 +88,7 @@ def test_chance_is_uniform_where_there_is_no_line():
     assert stats.kstest(chances, "uniform").pvalue > 1e-3
 
 
-def test_amplitudes_that_vary_widen_the_claim():
+def test_varying_amplitudes_widen_the_covariance():
     """Over the arc or from segment to stroke: a line then spreads into skirts, which the floor beside the pair sees."""
     rng = np.random.default_rng(4)
 
@@ -134,7 +134,7 @@ def test_two_lines_explain_more_than_one_only_if_there_are_two():
         assert (evidence[0] - evidence[1] > math.log(1000.0)) is more
 
 
-def test_too_little_to_go_on_is_no_fit():
+def test_too_little_data_gives_no_fit():
     rng = np.random.default_rng(8)
     assert pool([]) is None
     (short,) = segments(rng, count=1, span=0.3)

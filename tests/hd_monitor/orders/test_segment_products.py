@@ -36,7 +36,7 @@ def fit_lines(values, angle, orders, trend=None):
     st.lists(st.floats(-5.0, 5.0), min_size=3, max_size=3),
     st.integers(0, 2**32 - 1),
 )
-def test_without_noise_the_phasors_come_out_whatever_the_speed(degrees, phasors, trend, seed):
+def test_phasors_are_exact_without_noise_at_any_speed(degrees, phasors, trend, seed):
     rng = np.random.default_rng(seed)
     orders = np.array([158.0, 160.0, 162.0, 324.0])
     # Ever changing speed, and half of it backwards.
@@ -69,7 +69,7 @@ def white(rng, size):
 
 
 @pytest.mark.parametrize(("separation", "factor"), [(0.25, 5.3), (0.5, 1.68), (0.75, 1.10), (1.0, 1.0), (2.0, 1.0)])
-def test_is_unbiased_with_the_variance_of_theory(separation, factor):
+def test_is_unbiased_with_the_theoretical_variance(separation, factor):
     """Separations in lines' resolutions of 180°: the variance factor is 1 / (1 - sinc²)."""
     runs = 600
     errors, claimed, floors = study(180.0 * separation, runs, white)
@@ -84,7 +84,7 @@ def test_is_unbiased_with_the_variance_of_theory(separation, factor):
     assert np.mean(floors**2) == pytest.approx(0.25, rel=4.0 * math.sqrt(2.0 / (12 * runs)))
 
 
-def test_covers_at_its_confidence_with_the_floor_s_degrees_of_freedom():
+def test_intervals_cover_at_their_confidence_with_the_floors_degrees_of_freedom():
     rng = np.random.default_rng(8)
     angle, hits, runs = arc(90.0), 0, 1500
     for _ in range(runs):
@@ -94,7 +94,7 @@ def test_covers_at_its_confidence_with_the_floor_s_degrees_of_freedom():
     assert hits / runs == pytest.approx(0.95, abs=4.0 * math.sqrt(0.95 * 0.05 / runs))
 
 
-def test_the_floor_is_that_around_the_lines_not_that_of_the_band():
+def test_the_floor_is_measured_around_the_lines_not_over_the_band():
     """Red noise: the band's standard deviation would claim errors many times too large or too small."""
 
     def red(rng, size):
@@ -109,7 +109,7 @@ def test_the_floor_is_that_around_the_lines_not_that_of_the_band():
     assert gain < 0.5 * 21.0  # so the test could tell the difference
 
 
-def test_spikes_hardly_hurt_and_the_claim_knows():
+def test_spikes_hardly_widen_errors_and_the_covariance_accounts_for_it():
     def spiky(rng, size):
         return white(rng, size) + 40.0 * rng.standard_normal(size) * (rng.random(size) < 0.02)
 
@@ -121,7 +121,7 @@ def test_spikes_hardly_hurt_and_the_claim_knows():
     assert claimed.mean() == pytest.approx(np.mean(errors**2), rel=0.15)
 
 
-def test_trend_terms_are_taken_out_even_when_they_repeat_each_other():
+def test_trend_terms_are_removed_even_if_linearly_dependent():
     angle = arc(180.0)
     friction = np.where(np.arange(angle.size) % 500 < 250, 1.0, -1.0)
     gravity = np.sin(angle)
@@ -141,7 +141,7 @@ def test_strokes_over_one_arc_add_signal_to_noise_ratio_but_no_resolution():
     assert shapes[0] / shapes[1] == pytest.approx(1.0 / 16.0, rel=1e-3)
 
 
-def test_the_chance_of_noise_is_uniform():
+def test_the_chance_is_uniform_for_noise_alone():
     rng = np.random.default_rng(6)
     angle = arc(360.0, 800)
     chances = [fit_lines(white(rng, angle.size), angle, PAIR).chances[1] for _ in range(800)]
@@ -169,7 +169,7 @@ def test_the_result_scales_with_the_unit_and_the_angle(unit, gear):
     np.testing.assert_allclose(other.floor, one.floor, rtol=1e-3)
 
 
-def test_columns_follow_the_phasor_s_convention():
+def test_columns_follow_the_phasor_convention():
     angle = arc(30.0, 50)
     np.testing.assert_allclose(line_columns(angle, [3.0]) @ [0.6, 0.8], ((0.6 + 0.8j) * np.exp(3j * angle)).real)
 
@@ -185,7 +185,7 @@ def test_a_signal_that_does_not_change_is_not_fitted():
     assert fit_lines(np.zeros(100), arc(90.0, 100), PAIR) is None
 
 
-def test_the_clipped_fit_is_that_of_the_clean_signal():
+def test_the_clipped_fit_equals_that_of_the_clean_signal():
     rng = np.random.default_rng(10)
     columns = rng.standard_normal((400, 3))
     signal = columns @ [1.0, -2.0, 0.5] + 0.1 * rng.standard_normal(400)

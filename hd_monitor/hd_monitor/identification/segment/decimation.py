@@ -7,7 +7,7 @@ import numpy as np
 from scipy import signal
 from scipy.interpolate import CubicSpline
 
-from ...arrays import BoolArray, FloatArray
+from ...arrays import BoolArray, FloatArray, runs_of
 
 RATE_OVER_LINE = 2.8
 RATE_OVER_NATURAL = 6.4
@@ -24,7 +24,7 @@ _BRIDGED = 2  # samples missing in a row that interpolation replaces before the 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Decimated:
-    """Samples fit for use.
+    """Samples at a reduced rate.
 
     Attributes
     ----------
@@ -34,9 +34,9 @@ class Decimated:
     factor : int
         Raw sample periods per sample.
     first : int
-        Number of the raw sample at which the first one stands.
+        Index of the raw sample that the first one stands for.
     highest_frequency : float
-        [Hz] up to which the values can be trusted.
+        Frequency [Hz] up to which the values can be trusted.
     """
 
     values: FloatArray
@@ -90,8 +90,7 @@ def _bridge(raw: FloatArray, used: BoolArray) -> FloatArray:
 
 def _in_hole(used: BoolArray) -> BoolArray:
     """Mark missing samples that are more than `_BRIDGED` in a row."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[True], used, [True]]).astype(np.int8)))
     hole = np.zeros(used.shape, dtype=np.bool_)
-    for first, last in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
+    for first, last in runs_of(~used):
         hole[first:last] = last - first > _BRIDGED
     return hole

@@ -114,8 +114,8 @@ def paths_along(
 def _at_points(parts: FloatArray, samples: FloatArray, *coefficients: FloatArray) -> FloatArray:
     """Evaluate polynomials in the place in each interval between samples, the constant coefficients first.
 
-    They are wanted at `parts` of each interval, shape (kinds, parts). The points come kind by kind, each in the order
-    of time, and after those of the first kind the last sample.
+    They are evaluated at `parts` of each interval, shape (kinds, parts). The points come kind by kind, each in order of
+    time; those of the first kind end with the last sample.
     """
     place = parts[:, :, None]
     values = coefficients[-1]

@@ -26,7 +26,7 @@ MOST_SUBSTEPS = 16
 LARGEST_PHASE_STEP = 1.0
 """Phase [rad] of the natural oscillation and of the fastest stiffness harmonic that an integration step may cover."""
 
-_SIDE_ORDERS = 4.0  # orders above the highest line at which load fluctuations may still put side lines
+_SIDE_ORDERS = 4.0  # orders above the highest line within which load fluctuations may cause side lines
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -52,7 +52,7 @@ class Segment:
     slow : ndarray, shape (samples, terms)
         Orthonormal directions of slow motion (0 where samples are left out), no part of the torsional vibration.
     highest_frequency : float
-        Frequency [Hz] up to which the samples are to be trusted.
+        Frequency [Hz] up to which the samples can be trusted.
     raw_highest : float
         Half the sensor's sampling rate [Hz].
     raw_samples : int
@@ -88,7 +88,7 @@ class Segment:
 
     @property
     def travel(self) -> float:
-        """Length of the way [rad] that the output went, there and back counted twice."""
+        """Length of the output's path [rad]: a stroke there and back counts twice."""
         return float(np.abs(np.diff(self.angle)).sum())
 
     @property
@@ -176,7 +176,7 @@ class SegmentBuilder:
         if steps > MOST_SUBSTEPS:
             raise ParameterError(
                 f"at {top_speed:.3g} rad/s and {1.0 / step:.4g} samples a second the lines and the natural frequency, "
-                f"{self.natural_frequency:g} Hz, ask for {steps} integration steps a sample, above {MOST_SUBSTEPS}: "
+                f"{self.natural_frequency:g} Hz, would need {steps} integration steps a sample, above {MOST_SUBSTEPS}: "
                 "such a signal shows nothing of them; check that positions are in rad on the output side, or sample "
                 "faster"
             )
@@ -205,7 +205,7 @@ class SegmentBuilder:
         return max(1, math.ceil(fastest * step / LARGEST_PHASE_STEP))
 
     def _slow(self, motion: Motion, values: FloatArray, used: BoolArray) -> FloatArray:
-        """Directions below about 1 Hz, the joint's own acceleration, foreign tones; for an inertial sensor gravity."""
+        """Directions below about 1 Hz, of the joint's own acceleration, of foreign tones; of gravity if inertial."""
         size = motion.angle.size
         degree = _slow_degree(size * motion.step)
         parts = [np.polynomial.legendre.legvander(np.linspace(-1.0, 1.0, size), degree)]
@@ -230,7 +230,7 @@ class SegmentBuilder:
 
 
 def _slow_degree(duration: float) -> int:
-    """Degree of the polynomial in time [s] that takes off what is slower than about 1 Hz."""
+    """Degree of the polynomial that removes what is slower than about 1 Hz over a duration [s]."""
     return 3 + math.ceil(2.0 * duration)
 
 

@@ -1,4 +1,4 @@
-"""Foreign tones in a vibration signal: mains hum or a neighbouring machine, at frequencies where no line can be."""
+"""Foreign tones in a vibration signal: mains hum or a neighbouring machine, at frequencies where there is no line."""
 
 import math
 
@@ -9,7 +9,7 @@ from scipy.signal import get_window
 from ...arrays import FloatArray
 
 MOST_TONES = 4
-"""Tones that are taken off a segment at most."""
+"""Tones that are removed from a segment at most."""
 
 _STANDS_OUT = 100.0  # power of a tone over the median of its surroundings
 _SURROUNDINGS = 24  # bins on either side
@@ -29,7 +29,7 @@ def foreign_tones(values: FloatArray, period: float, own: FloatArray, width: flo
     own : ndarray, shape (lines, 2)
         Lowest and highest frequency [Hz] of each line over the segment.
     width : float
-        Distance [Hz] from its own lines within which nothing passes for a tone.
+        Distance [Hz] from its own lines within which nothing counts as a tone.
 
     Returns
     -------

@@ -1,6 +1,6 @@
 """What drives the model besides the defects: the measured torque and the joint's own acceleration, without noise.
 
-The reducer is a lightly damped resonator: noise of a per cent on a measured torque, taken at its word, would excite it
+The reducer is a lightly damped resonator: noise of a per cent on a measured torque, taken as exact, would excite it
 more than a defect does. What a joint transmits follows its angle and its motion, and else changes slowly.
 """
 
@@ -17,10 +17,10 @@ SLOW = 0.08
 """Standard deviation [s] of the smoothing of what angle and motion do not explain: 2 Hz."""
 
 SIGNIFICANT = 9.0
-"""Power of a term, a degree of freedom, over that of the torque's noise from which the term is taken for real."""
+"""Power of a term, a degree of freedom, over that of the torque's noise from which the term counts as real."""
 
-_SLOW_SIGNIFICANT = 3.0  # power of what is slow, over that of the noise in it, from which some of it is taken for real
-_NOISE_BAND = (4.0, 20.0)  # Hz, above what is slow and below what slow joint states show no more
+_SLOW_SIGNIFICANT = 3.0  # power of what is slow, over that of the noise in it, from which some of it counts as real
+_NOISE_BAND = (4.0, 20.0)  # Hz, above what is slow and below what slow joint states can show
 _MEDIAN = math.log(2.0)  # of the power of noise at one frequency, over its mean
 _HANN_POWER = 0.375  # mean square of a Hann window
 _QUICK = 0.012  # s, smoothing of the joint's own acceleration
@@ -43,8 +43,8 @@ def regress_torque(
 
     A regression on angle (gravity, load), speed (friction) and acceleration keeps what is quick but explained, such
     as the friction's change of sign at a reversal; of the rest only what is slow is kept. Both are kept only as far
-    as they stand out of the torque's own noise: whatever is kept counts as known for sure, and puts side lines beside
-    every line that no noise floor tells of.
+    as they stand out of the torque's own noise: whatever is kept counts as exactly known, and puts side lines beside
+    every line that no noise floor accounts for.
     """
     if float(np.ptp(torque)) == 0.0:
         return torque

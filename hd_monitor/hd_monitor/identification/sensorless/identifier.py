@@ -37,8 +37,8 @@ class SensorlessIdentifier:
     servo's slow work by a spline in the angle that is too stiff to follow a line. Segments of one direction add up
     coherently in the absolute angle; the directions stay apart, since friction and load make them differ.
 
-    A motor current tells nothing of the stiffness's size, so the indexes are relative: shares whose squares add up to
-    one. A spline is named only if its line is found in every direction and is the larger one in each of them.
+    A motor current says nothing about the stiffness's size, so the indexes are relative: shares whose squares add up
+    to one. A spline is named only if its line is found in every direction and is the larger one in each of them.
 
     Examples
     --------
@@ -87,7 +87,7 @@ class SensorlessIdentifier:
             self._append(segment)
 
     def estimate(self) -> Identification | None:
-        """Return what the segments seen so far tell, or None before the first one."""
+        """Return what the segments seen so far show, or None before the first one."""
         if self._stale:
             self._latest = self._identify()
             self._stale = False
@@ -99,7 +99,7 @@ class SensorlessIdentifier:
         return self._latest
 
     def finish(self) -> Identification | None:
-        """Use the segment that is still open, and return what everything seen tells."""
+        """Use the segment that is still open, and return what all segments show."""
         for segment in self._cutter.finish():
             self._append(segment)
         return self.estimate()

@@ -14,7 +14,7 @@ from ...orders.segment_products import products_of_segment, residual_of_segment
 from ...orders.whitening import learn_whitening
 
 LEAST_SHARE = 0.1
-"""Part of the motion that a direction must have to be heard."""
+"""Part of the motion that a direction must have to count."""
 
 RELEARN = 3.0
 """Growth of the data after which the background is learnt anew."""
@@ -42,7 +42,7 @@ class SegmentPool:
     Parameters
     ----------
     orders : sequence of LineOrders
-        The first set decides what counts as background, and which segments are heard.
+        The first set decides what counts as background, and which segments count.
     memory : float
         Motion [s] that is kept.
     """
@@ -90,10 +90,10 @@ class SegmentPool:
 
     def _groups(self) -> Iterator[tuple[str, list[_Pooled]]]:
         """Segments that are pooled coherently: by direction, or by time if there is one direction only."""
-        heard = [pooled for pooled in self._pooled if pooled.products[0] is not None]
-        total = _rows(heard)
+        usable = [pooled for pooled in self._pooled if pooled.products[0] is not None]
+        total = _rows(usable)
         by_direction = {
-            name: [pooled for pooled in heard if pooled.segment.direction == sign]
+            name: [pooled for pooled in usable if pooled.segment.direction == sign]
             for name, sign in (("forward", 1), ("reverse", -1))
         }
         kept = {name: group for name, group in by_direction.items() if _rows(group) >= max(LEAST_SHARE * total, 1)}

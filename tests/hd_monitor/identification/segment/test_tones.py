@@ -34,7 +34,7 @@ def test_the_strongest_come_first_and_only_so_many():
 
 
 @pytest.mark.parametrize("frequency", [33.4, 67.0, 68.0])
-def test_lines_and_what_may_be_their_side_lines_never_pass_for_tones(frequency):
+def test_lines_and_their_possible_side_lines_never_count_as_tones(frequency):
     assert foreign_tones(noise(3) + tone(frequency, 5.0), PERIOD, LINES, 1.0).size == 0
 
 
@@ -43,11 +43,11 @@ def test_noise_holds_no_tones():
     assert found == 0
 
 
-def test_too_short_a_segment_says_nothing():
+def test_a_segment_that_is_too_short_has_no_tones():
     assert foreign_tones(tone(50.0, 5.0)[:150], PERIOD, LINES, 1.0).size == 0
 
 
-def test_the_columns_take_a_tone_off_whatever_its_phase():
+def test_the_columns_remove_a_tone_of_any_phase():
     columns = tone_columns(np.array([50.123]), COUNT, PERIOD)
     signal = tone(50.123, 2.0)
     rest = signal - columns @ np.linalg.lstsq(columns, signal, rcond=None)[0]

@@ -30,7 +30,7 @@ def smoothed(torque, motion):
     return regress_torque(torque, angle, speed, own_acceleration(speed, PERIOD), PERIOD)
 
 
-def test_noise_on_a_constant_torque_goes_but_for_its_mean():
+def test_noise_on_a_constant_torque_is_removed_except_its_mean():
     """The mean of 500 joint states is known to a twentieth of the noise; nothing else may be left of it."""
     for seed in range(20):
         result = smoothed(MEAN + noise(seed), steady())
@@ -38,7 +38,7 @@ def test_noise_on_a_constant_torque_goes_but_for_its_mean():
         assert np.mean(result) == pytest.approx(MEAN, abs=4.0 * NOISE / np.sqrt(500.0))
 
 
-def test_noise_of_the_speed_is_not_taken_for_friction():
+def test_noise_of_the_speed_is_not_mistaken_for_friction():
     angle, speed = steady()
     noisy = speed + 0.004 * np.random.default_rng(3).standard_normal(speed.size)
     assert np.std(smoothed(MEAN + noise(4), (angle, noisy))) < 0.05 * NOISE

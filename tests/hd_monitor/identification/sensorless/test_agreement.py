@@ -69,7 +69,7 @@ def test_one_stroke_is_not_enough():
     assert "One stroke only" in reasons(direction())[0]
 
 
-def test_a_stronger_line_elsewhere_asks_for_the_teeth():
+def test_a_stronger_line_elsewhere_questions_the_teeth():
     wrong = direction(rival=190.0, chance=(0.3, 0.4))
     found = reasons(wrong, wrong)
     assert "stronger line at about 190" in found[0]

@@ -54,7 +54,7 @@ def test_names_the_larger_line(cs, fs, component):
         assert abs(np.abs(found.circular_spline[0]) - found.index.circular_spline) < 1e-12
 
 
-def test_directions_are_reported_apart():
+def test_directions_are_reported_separately():
     whole = swinging()
     strong = whole.speed > 0.0
     whole.effort[strong] += 0.3 * np.cos(162 * whole.angle[strong])
@@ -124,7 +124,7 @@ def test_stamps_hardly_matter():
 
 @pytest.mark.parametrize("mount", ["circular_spline_fixed", "flexspline_fixed"])
 @pytest.mark.parametrize(("cs", "fs"), [(0.3, 0.1), (0.1, 0.3)])
-def test_both_mounts_and_a_word_on_the_motor_where_it_shares_the_line(mount, cs, fs):
+def test_both_mounts_and_the_motor_is_mentioned_where_it_shares_the_line(mount, cs, fs):
     parameters = settings_of(reducer__mount=mount)
     identifier = identify(swinging(cs, fs), parameters)
     assert named(identifier, parameters) is (Component.CIRCULAR_SPLINE if cs > fs else Component.FLEXSPLINE)
@@ -181,7 +181,7 @@ def test_old_evidence_fades_after_a_repair():
     assert named(identifier, settings_of()) is Component.FLEXSPLINE
 
 
-# What cannot be told -------------------------------------------------------------------------------------------------
+# What cannot be known -------------------------------------------------------------------------------------------------
 
 
 def test_says_nothing_before_anything_came():
@@ -197,7 +197,7 @@ def test_one_stroke_is_not_enough():
     assert "One stroke only" in describe_limitation(found.blockers[0])
 
 
-def test_a_missing_field_is_named_with_the_way_out():
+def test_a_missing_field_is_named_with_its_remedy():
     whole = swinging()
     blind = JointSamples(times=whole.times, angle=whole.angle, speed=whole.speed, effort=np.full(len(whole), np.nan))
     (reason,) = map(describe_limitation, identify(blind, settings_of()).estimate().blockers)
@@ -218,7 +218,7 @@ def test_too_fast_for_the_rate_is_named():
     assert "too fast" in reason
 
 
-def test_standing_still_tells_nothing():
+def test_standing_still_gives_no_result():
     times = np.arange(0.0, 30.0, 0.01)
     noise = 1e-5 * np.random.default_rng(1).standard_normal(times.size)
     samples = JointSamples(times=times, angle=noise, speed=100.0 * noise, effort=noise)
