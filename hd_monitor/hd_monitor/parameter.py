@@ -116,7 +116,7 @@ def check_all(parameters: Sequence[Parameter], given: Mapping[str, Any], *, owne
 
 
 def fill_group[T: "DataclassInstance"](values: Mapping[str, Any], group: str, kind: type[T]) -> T:
-    """Fill the fields of a dataclass from the parameters of the same names below a group.
+    """Fill the fields of a dataclass from the parameters of the same names below a group, or of those without one.
 
     Examples
     --------
@@ -125,7 +125,8 @@ def fill_group[T: "DataclassInstance"](values: Mapping[str, Any], group: str, ki
     >>> fill_group(values, "dynamics", Dynamics).natural_frequency
     34.0
     """
-    return kind(**{field.name: values[f"{group}.{field.name}"] for field in fields(kind)})
+    prefix = f"{group}." if group else ""
+    return kind(**{field.name: values[prefix + field.name] for field in fields(kind)})
 
 
 def flatten(nested: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:

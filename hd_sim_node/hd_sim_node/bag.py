@@ -93,7 +93,7 @@ def write_bag(
         If a rig is unstable and ``unstable`` is ``refuse``.
     """
     rigs = [rigs] if isinstance(rigs, RigSettings) else list(rigs)
-    names = [rig["joint_states.name"] for rig in rigs]
+    names = [rig.joint.name for rig in rigs]
     if len(set(names)) != len(names):
         raise BagError(f"joint_states.name is {' and '.join(names)}: several rigs need joints of different names")
     rigs = [_with_an_end(rig) for rig in rigs]

@@ -22,8 +22,12 @@ class JointSettings:
 
     Parameters
     ----------
+    name : str
+        The joint's name in the messages.
     rate : float
         Messages per second [Hz].
+    loss : float
+        Fraction of the messages that is lost.
     side : str
         ``motor``: the motor's encoder divided by the reduction; ``output``: an encoder behind the reducer, which sees
         the torsional vibration.
@@ -44,7 +48,9 @@ class JointSettings:
         Standard deviation of the stamps [s].
     """
 
+    name: str = "joint"
     rate: float = 100.0
+    loss: float = 0.0
     side: str = "motor"
     reversed: bool = False
     resolution: float = 0.0

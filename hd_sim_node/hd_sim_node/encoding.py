@@ -64,7 +64,7 @@ class Encoder:
         accel = self._library.make("geometry_msgs/msg/Accel", linear=self._vector(), angular=self._vector())
         rows = self._copies(contract.TORSIONAL_ACCELERATION, stretch.stamps + epoch, accel=accel)
         rows["angular"][:, 2] = stretch.samples
-        rows["linear"][:, 1] = self._settings["sensor.radius"] * stretch.samples
+        rows["linear"][:, 1] = self._settings.mounting.radius * stretch.samples
         return rows
 
     def _imu(self, stretch: Stretch, epoch: int) -> np.ndarray[Any, Any]:
@@ -82,8 +82,8 @@ class Encoder:
         rows["linear"], rows["angular"] = imu_readings(
             stretch.motion,
             stretch.samples,
-            radius=self._settings["sensor.radius"],
-            axis=self._settings["sensor.imu_axis"],
+            radius=self._settings.mounting.radius,
+            axis=self._settings.mounting.imu_axis,
             surroundings=self._settings.surroundings,
         )
         return rows
@@ -93,7 +93,7 @@ class Encoder:
         rows = self._copies(
             contract.JOINT_STATES,
             stretch.joint.stamps + epoch,
-            name=[self._settings["joint_states.name"]],
+            name=[self._settings.joint.name],
             **{name: np.zeros(0 if value is None else 1) for name, value in values.items()},
         )
         for name, value in values.items():
@@ -114,7 +114,7 @@ class Encoder:
         stamped, kind = not isinstance(stamps, int), MESSAGE_TYPES[topic]
         if stamped:
             stamp = self._library.make("builtin_interfaces/msg/Time", sec=0, nanosec=0)
-            frame = "" if topic == contract.JOINT_STATES else self._settings["sensor.frame_id"]
+            frame = "" if topic == contract.JOINT_STATES else self._settings.mounting.frame_id
             fields["header"] = self._library.make("std_msgs/msg/Header", stamp=stamp, frame_id=frame)
         template = bytes(self._library.serialise(self._library.make(kind, **fields), kind))
         layout, count = record_layout(template, kind), stamps if isinstance(stamps, int) else stamps.size

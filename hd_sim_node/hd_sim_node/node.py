@@ -64,7 +64,7 @@ class HdSimNode(ManagedNode):
         settings = RigSettings.from_mapping(pick(given, NODE_PARAMETERS))
         for parameter in PARAMETERS:
             fixed = not parameter.name.startswith(CHANGEABLE)
-            declare(self, parameter.name, settings[parameter.name], describe(parameter, read_only=fixed))
+            declare(self, parameter.name, settings.values[parameter.name], describe(parameter, read_only=fixed))
         for parameter in NODE_PARAMETERS:
             value = parameter.check(given.get(parameter.name, parameter.default))
             fixed = parameter.name != "time_scale"
@@ -100,7 +100,7 @@ class HdSimNode(ManagedNode):
         model = settings.model
         self.get_logger().info(
             f"rig {settings.reducer.flexspline_teeth}/{settings.reducer.circular_spline_teeth}, programme "
-            f"{settings['programme']}, defect {settings['defect']}: index of the flexspline "
+            f"{settings.general.programme}, defect {settings.general.defect}: index of the flexspline "
             f"{100 * model.flexspline.index:.2f} %, of the circular spline {100 * model.circular_spline.index:.2f} %"
         )
         for remark in (*settings.remarks, self._simulation.warning):

@@ -8,7 +8,7 @@ from typing import Any, Self
 
 from hd_monitor.errors import ParameterError
 from hd_monitor.model import Dynamics, ParametricModel, StiffnessSeries, Torque
-from hd_monitor.parameter import Parameter, Value, check_all, fill_group, flatten
+from hd_monitor.parameter import Parameter, check_all, fill_group, flatten
 from hd_monitor.reducer import Reducer
 from hd_monitor.settings import NODE_PARAMETERS, ROS_PARAMETERS
 from hd_monitor.settings import PARAMETERS as MONITOR_PARAMETERS
@@ -25,6 +25,33 @@ from .transport import TransportSettings
 _DEGREE = math.pi / 180.0
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GeneralSettings:
+    """The parameters without a group."""
+
+    programme: str
+    cycles: int
+    duration: float
+    start_angle: float
+    defect: str
+    rigid_body: bool
+    publish: str
+    publish_imu: bool
+    block_size: int
+    seed: int
+    unstable: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MountingSettings:
+    """Those parameters ``sensor.*`` that say how the accelerometer is mounted and sampled."""
+
+    rate: float
+    radius: float
+    imu_axis: str
+    frame_id: str
+
+
 @dataclass(frozen=True, slots=True)
 class RigSettings:
     """All settings of a simulated rig, checked against the table and against each other.
@@ -36,7 +63,7 @@ class RigSettings:
     (400.0, 0.103)
     """
 
-    values: Mapping[str, Value]
+    values: Mapping[str, Any]
 
     @classmethod
     def from_mapping(cls, given: Mapping[str, Any] | None = None) -> Self:
@@ -52,17 +79,24 @@ class RigSettings:
             getattr(settings, part)
         return settings
 
-    def __getitem__(self, name: str) -> Any:
-        """Return the value of the parameter with this dotted name."""
-        return self.values[name]
+    @property
+    def general(self) -> GeneralSettings:
+        """The parameters without a group."""
+        return fill_group(self.values, "", GeneralSettings)
+
+    @property
+    def mounting(self) -> MountingSettings:
+        """How the accelerometer is mounted and sampled."""
+        return fill_group(self.values, "sensor", MountingSettings)
 
     @property
     def remarks(self) -> list[str]:
         """Sentences about settings that the user may not have intended."""
-        if self["defect"] == CUSTOM or not any((*self["flexspline.beta"], *self["circular_spline.beta"])):
+        defect = self.general.defect
+        if defect == CUSTOM or not any((*self.values["flexspline.beta"], *self.values["circular_spline.beta"])):
             return []
         return [
-            f"defect = {self['defect']!r} ignores the flexspline.beta and circular_spline.beta given; set defect to "
+            f"defect = {defect!r} ignores the flexspline.beta and circular_spline.beta given; set defect to "
             "'custom' to use them"
         ]
 
@@ -75,7 +109,7 @@ class RigSettings:
     def model(self) -> ParametricModel:
         """The reducer with its defects, the inertia and the torques."""
         flexspline, circular_spline = stiffness_of(
-            self["defect"], self._custom("flexspline"), self._custom("circular_spline")
+            self.general.defect, self._custom("flexspline"), self._custom("circular_spline")
         )
         return ParametricModel(
             reducer=self.reducer,
@@ -86,33 +120,33 @@ class RigSettings:
         )
 
     def _custom(self, spline: str) -> StiffnessSeries:
-        beta, phase = self[f"{spline}.beta"], self[f"{spline}.phase"]
+        beta, phase = self.values[f"{spline}.beta"], self.values[f"{spline}.phase"]
         return StiffnessSeries(beta, phase + (0.0,) * (len(beta) - len(phase)))
 
     @property
     def programme(self) -> SpeedProgramme:
         """The speed programme."""
-        ripple = Ripple(self["speed_ripple.amplitude"], self["speed_ripple.order"])
-        return build_programme(self["programme"], self.values, self.reducer, cycles=self["cycles"], ripple=ripple)
+        general, ripple = self.general, Ripple(self.values["speed_ripple.amplitude"], self.values["speed_ripple.order"])
+        return build_programme(general.programme, self.values, self.reducer, cycles=general.cycles, ripple=ripple)
 
     @property
     def surroundings(self) -> Surroundings:
         """What acts besides the model's own torques."""
         return Surroundings(
-            gravity=self["torque.gravity"],
-            gravity_angle=self["torque.gravity_angle"] * _DEGREE,
-            rigid_body=self["rigid_body"],
+            gravity=self.values["torque.gravity"],
+            gravity_angle=self.values["torque.gravity_angle"] * _DEGREE,
+            rigid_body=self.general.rigid_body,
         )
 
     @property
     def start_angle(self) -> float:
         """Output angle at the start [rad]."""
-        return float(self["start_angle"] * _DEGREE)
+        return self.general.start_angle * _DEGREE
 
     @property
     def duration(self) -> float:
         """Simulated time [s] after which the rig ends; infinite if never."""
-        return min(self["duration"] or math.inf, self.programme.duration)
+        return min(self.general.duration or math.inf, self.programme.duration)
 
     @property
     def sensor(self) -> SensorSettings:

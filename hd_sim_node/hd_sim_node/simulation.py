@@ -84,7 +84,7 @@ class Simulation:
     def __init__(self, settings: RigSettings) -> None:
         self.warning = check_stability(settings)
         self._settings = settings
-        rate, seed = settings["sensor.rate"], settings["seed"]
+        general, rate, seed = settings.general, settings.mounting.rate, settings.general.seed
         self._rig = Rig(
             settings.model,
             settings.programme,
@@ -94,15 +94,15 @@ class Simulation:
         )
         self._accelerometer = Accelerometer(settings.sensor, rate=rate, seed=seed)
         self._joint = Joint(self._rig, settings.joint, seed=seed)
-        self._block_size: int = settings["block_size"]
+        self._block_size = general.block_size
         self._sequence = 0
         published = {
-            contract.TORSIONAL_ACCELERATION_BLOCK: settings["publish"] in ("block", "both"),
-            contract.TORSIONAL_ACCELERATION: settings["publish"] in ("samples", "both"),
-            contract.IMU: settings["publish_imu"],
+            contract.TORSIONAL_ACCELERATION_BLOCK: general.publish in ("block", "both"),
+            contract.TORSIONAL_ACCELERATION: general.publish in ("samples", "both"),
+            contract.IMU: general.publish_imu,
         }
         self._transports = {t: Transport(settings.transport, seed=seed, topic=t) for t in published if published[t]}
-        loss = TransportSettings(loss=settings["joint_states.loss"])
+        loss = TransportSettings(loss=settings.joint.loss)
         self._transports[contract.JOINT_STATES] = Transport(loss, seed=seed, topic=contract.JOINT_STATES)
         blocks = max(1, round(_STRETCH * rate / self._block_size))
         self._count = blocks * self._block_size
@@ -123,7 +123,7 @@ class Simulation:
     def message_rate(self, topic: str) -> float:
         """Messages per simulated second on a topic."""
         if topic == contract.JOINT_STATES:
-            return float(self._settings["joint_states.rate"])
+            return self._settings.joint.rate
         return self._rig.rate / (self._block_size if topic == contract.TORSIONAL_ACCELERATION_BLOCK else 1)
 
     def change(self, settings: RigSettings) -> None:
@@ -155,15 +155,14 @@ class Simulation:
         """Simulate the next stretch; None at the end."""
         count = self._count
         if self._left is not None:
-            blocks = min(count // self._block_size, self._left)
-            if not blocks:
+            whole = min(count // self._block_size, self._left)
+            if not whole:
                 return None
-            self._left -= blocks
-            count = blocks * self._block_size
+            self._left -= whole
+            count = whole * self._block_size
         motion = self._rig.advance(count)
         samples, stamps = self._accelerometer.measure(motion), self._accelerometer.stamps(motion)
         joint = self._joint.report(motion)
-        blocks = self._blocks(samples, stamps)
         instants = nanoseconds(motion.times)
         due = {
             contract.TORSIONAL_ACCELERATION_BLOCK: instants[self._block_size - 1 :: self._block_size],
@@ -175,7 +174,7 @@ class Simulation:
             motion=motion,
             samples=samples,
             stamps=stamps,
-            blocks=blocks,
+            blocks=self._blocks(samples, stamps),
             joint=joint,
             dispatch={topic: transport.dispatch(due[topic]) for topic, transport in self._transports.items()},
         )
@@ -202,10 +201,10 @@ def check_stability(settings: RigSettings) -> str:
     ParameterError
         If ``unstable`` is ``refuse``.
     """
-    if settings["unstable"] == "ignore":
+    if settings.general.unstable == "ignore":
         return ""
     found = unstable_speeds(settings.model, settings.programme)
     warning = describe(found) if found else ""
-    if warning and settings["unstable"] == "refuse":
+    if warning and settings.general.unstable == "refuse":
         raise ParameterError(warning)
     return warning

@@ -27,7 +27,7 @@ def test_rig_files_are_found():
 @pytest.mark.parametrize("file", FILES, ids=lambda f: f.name)
 def test_each_is_a_rig_that_runs(file):
     settings = load(file)
-    assert settings["programme"] in PROGRAMMES
+    assert settings.general.programme in PROGRAMMES
     assert settings.remarks == []
     assert unstable_speeds(settings.model, settings.programme) == []
 

@@ -71,7 +71,7 @@ class Plan:
         """What is simulated, in words."""
         speeds = abs(self.rig.programme.speeds)
         return (
-            f"a rig with defect {self.rig['defect']}: {self.rig['programme']}, {min(speeds):.0f} to "
+            f"a rig with defect {self.rig.general.defect}: {self.rig.general.programme}, {min(speeds):.0f} to "
             f"{max(speeds):.0f} rpm, {self.time_scale:g} × real time"
         )
 
@@ -87,8 +87,7 @@ class Plan:
 
     def progress(self, view: View) -> float:
         """Part of the simulated time that the monitor has seen, from 0 to 1."""
-        rate: float = self.rig["joint_states.rate"]
-        return (view.number("joint states") or 0.0) / rate / self.seconds
+        return (view.number("joint states") or 0.0) / self.rig.joint.rate / self.seconds
 
 
 def _command_line(parameters: Sequence[str]) -> tuple[str, ...]:
