@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 from scipy.stats import norm
 
 from .errors import BagError
-from .percent import percent_with_std
 from .result import plain
+from .summary import percent_with_std
 
 SIGNIFICANT = 0.01
 """Probability below which a change is no accident of the noise."""

@@ -140,11 +140,7 @@ def _harmonic(k: int, phasor: complex, covariance: FloatArray | None) -> Harmoni
     return Harmonic(k=k, beta=beta, phase=math.atan2(phasor.imag, phasor.real), phase_std=std)
 
 
-def natural_frequency(found: Identification) -> Estimate:
-    """Natural frequency [Hz]; its deviation is 0 if it was taken as given."""
-    return Estimate.lognormal(found.natural_frequency, found.natural_frequency_std)
-
-
-def damping_ratio(found: Identification) -> Estimate:
-    """Damping ratio; its deviation is 0 if it was taken as given."""
-    return Estimate.lognormal(found.damping_ratio, found.damping_ratio_std)
+def dynamics(found: Identification) -> dict[str, Estimate]:
+    """Natural frequency [Hz] and damping ratio by their parameters' names; a deviation is 0 for one taken as given."""
+    names = ("natural_frequency", "damping_ratio")
+    return {name: Estimate.lognormal(getattr(found, name), getattr(found, f"{name}_std")) for name in names}

@@ -10,7 +10,7 @@ import yaml
 from .. import __version__
 from ..acquisition.quality import Quality
 from ..diagnosis.limitations import describe_limitation
-from ..identification.teeth.ranking import ToothPairRanking
+from ..identification.teeth.ranking import ToothPair, ToothPairRanking
 from . import identify_numbers as numbers
 from .identify import JointIdentification
 from .identify_numbers import Estimate, Harmonic
@@ -18,7 +18,7 @@ from .identify_teeth import is_certain
 from .parameters import NODE
 from .result import line_entries, plain
 
-_SHOWN = 5
+SHOWN = 5
 """Candidate tooth pairs listed."""
 
 
@@ -47,19 +47,14 @@ def joint_entry(joint: JointIdentification) -> dict[str, Any]:
         "circular_spline": _spline(found.index.circular_spline, found.index_std.circular_spline, both.circular_spline),
         "flexspline": _spline(found.index.flexspline, found.index_std.flexspline, both.flexspline),
         "index_correlation": found.index_correlation,
-        "natural_frequency": None,
-        "damping_ratio": None,
-        "load_fluctuation": None,
+        **dict.fromkeys(("natural_frequency", "damping_ratio", "load_fluctuation")),
         "instability_speed_rpm": found.critical_speed,
         "never_unstable": math.isinf(found.critical_speed),
         "lines": line_entries(found),
         "directions": [
             {
                 "direction": d.name,
-                "amplitude": d.amplitude._asdict(),
-                "std": d.std._asdict(),
-                "chance": d.chance._asdict(),
-                "dominance": d.dominance._asdict(),
+                **{name: getattr(d, name)._asdict() for name in ("amplitude", "std", "chance", "dominance")},
                 "rival_order": d.rival,
                 "strokes": d.segments,
                 "samples": d.samples,
@@ -78,9 +73,9 @@ def joint_entry(joint: JointIdentification) -> dict[str, Any]:
         "notes": list(joint.plan.notes),
     }
     if not settings.sensorless:
-        fn, zeta = numbers.natural_frequency(found), numbers.damping_ratio(found)
-        entry["natural_frequency"] = _dynamics(fn, settings.dynamics.natural_frequency)
-        entry["damping_ratio"] = _dynamics(zeta, settings.dynamics.damping_ratio)
+        for name, estimate in numbers.dynamics(found).items():
+            given = getattr(settings.dynamics, name)
+            entry[name] = asdict(estimate) | {"given": given, "identified": estimate.std > 0.0}
         entry["load_fluctuation"] = asdict(Estimate.gaussian(found.load_fluctuation, found.load_fluctuation_std))
     return dict(plain(entry))
 
@@ -103,16 +98,13 @@ def parameter_file(joints: Sequence[JointIdentification]) -> tuple[str, list[str
     below: dict[str, dict[str, Any]] = {}
     reasons = []
     for joint in joints:
-        name = joint.plan.joint
-        values = refined(joint)
-        if values:
-            below[name] = values
+        if values := refined(joint):
+            below[joint.plan.joint] = values
         else:
-            reasons.append(f"joint {name!r}: {_why_not(joint)}")
+            reasons.append(f"joint {joint.plan.joint!r}: {_why_not(joint)}")
     if not below:
         return "", reasons
-    several = len(joints) > 1
-    parameters: dict[str, Any] = below if several else next(iter(below.values()))
+    parameters: dict[str, Any] = below if len(joints) > 1 else next(iter(below.values()))
     text = yaml.safe_dump({NODE: {"ros__parameters": parameters}}, sort_keys=False)
     bags = dict.fromkeys(" ".join(bag.split()) for joint in joints for bag in joint.bags)
     origin = f"# Identified by hd-monitor identify from {', '.join(bags)}; merge into the node's parameters.\n"
@@ -124,21 +116,11 @@ def refined(joint: JointIdentification) -> dict[str, Any]:
     found, settings, values = joint.found, joint.settings, dict[str, Any]()
     assert found is not None
     if joint.teeth is not None and is_certain(joint.teeth):
-        teeth = joint.teeth.ranked[0].teeth
-        values["reducer"] = {
-            "flexspline_teeth": int(teeth.flexspline),
-            "circular_spline_teeth": int(teeth.circular_spline),
-        }
+        values["reducer"] = _teeth_entry(joint.teeth.ranked[0].teeth)
     if settings.sensorless or found.blockers or teeth_contradict(joint):
         return values
-    known = {
-        name: float(f"{estimate.value:.6g}")
-        for name, estimate in (
-            ("natural_frequency", numbers.natural_frequency(found)),
-            ("damping_ratio", numbers.damping_ratio(found)),
-        )
-        if estimate.std > 0.0
-    }
+    estimates = numbers.dynamics(found)
+    known = {name: float(f"{estimate.value:.6g}") for name, estimate in estimates.items() if estimate.std > 0.0}
     return values | ({"dynamics": known} if known else {})
 
 
@@ -168,8 +150,8 @@ def _spline(index: float, std: float, betas: Sequence[Harmonic]) -> dict[str, An
     }
 
 
-def _dynamics(estimate: Estimate, given: float) -> dict[str, Any]:
-    return asdict(estimate) | {"given": given, "identified": estimate.std > 0.0}
+def _teeth_entry(teeth: ToothPair) -> dict[str, int]:
+    return {"flexspline_teeth": int(teeth.flexspline), "circular_spline_teeth": int(teeth.circular_spline)}
 
 
 def _teeth(ranking: ToothPairRanking | None) -> dict[str, Any] | None:
@@ -182,12 +164,11 @@ def _teeth(ranking: ToothPairRanking | None) -> dict[str, Any] | None:
         "travel_deg": math.degrees(ranking.travel),
         "ranked": [
             {
-                "flexspline_teeth": int(pair.teeth.flexspline),
-                "circular_spline_teeth": int(pair.teeth.circular_spline),
+                **_teeth_entry(pair.teeth),
                 "log_evidence": pair.log_evidence,
                 "chance": pair.chance,
                 "lines_found": pair.lines_found,
             }
-            for pair in ranking.ranked[:_SHOWN]
+            for pair in ranking.ranked[:SHOWN]
         ],
     }

@@ -8,11 +8,11 @@ from ..identification.result import Identification
 from . import identify_numbers as numbers
 from .identify import JointIdentification
 from .identify_numbers import Estimate
-from .identify_result import quality_sums, teeth_contradict
+from .identify_result import SHOWN, quality_sums, teeth_contradict
 from .identify_teeth import is_certain
+from .summary import faults_in_words
 
-_SHOWN = 5
-"""Candidate tooth pairs shown."""
+_SPLINES = ("circular spline", "flexspline")
 
 
 def table(joint: JointIdentification) -> str:
@@ -42,30 +42,28 @@ def _head(joint: JointIdentification, found: Identification) -> Iterator[str]:
 
 
 def _splines(joint: JointIdentification, found: Identification) -> Iterator[str]:
-    both = numbers.harmonics(found)
-    splines = (("circular spline", both.circular_spline, 0), ("flexspline", both.flexspline, 1))
+    indexes = [Estimate.gaussian(*index) for index in zip(found.index, found.index_std, strict=True)]
     if joint.settings.sensorless:
         yield "  relative index (share of the lines' size)      95 % interval"
-        for name, _, place in splines:
-            estimate = Estimate.gaussian(found.index[place], found.index_std[place])
-            yield f"    {name:<16} {_value(estimate, 1.0)}"
+        for name, index in zip(_SPLINES, indexes, strict=True):
+            yield f"    {name:<16} {_value(index, 1.0)}"
         return
     kind = "relative β, no torque is known" if found.relative else "β of the mean stiffness"
     yield f"  {kind:<32} %  95 % interval               phase, rad"
-    for name, harmonics, place in splines:
+    for name, harmonics, index in zip(_SPLINES, numbers.harmonics(found), indexes, strict=True):
         for h in harmonics:
             phase = f"{h.phase:+.3f} ± {h.phase_std:.2g}" if math.isfinite(h.phase) else "in the noise"
             yield f"    {name:<16} k = {h.k}   {_value(h.beta, 100.0):<45} {phase}"
-        estimate = Estimate.gaussian(found.index[place], found.index_std[place])
-        yield f"    {name:<16} index   {_value(estimate, 100.0)}"
+        yield f"    {name:<16} index   {_value(index, 100.0)}"
     yield f"    correlation of the two indexes' errors {found.index_correlation:+.2f}"
 
 
 def _dynamics(joint: JointIdentification, found: Identification) -> Iterator[str]:
     given = joint.settings.dynamics
+    fn, zeta = numbers.dynamics(found).values()
     for name, unit, estimate, start in (
-        ("natural frequency fn", " Hz", numbers.natural_frequency(found), given.natural_frequency),
-        ("damping ratio ζ", "", numbers.damping_ratio(found), given.damping_ratio),
+        ("natural frequency fn", " Hz", fn, given.natural_frequency),
+        ("damping ratio ζ", "", zeta, given.damping_ratio),
     ):
         if estimate.std > 0.0:
             yield f"  {name:<22} {_value(estimate, 1.0)}{unit}; given was {start:g}{unit}"
@@ -80,15 +78,16 @@ def _dynamics(joint: JointIdentification, found: Identification) -> Iterator[str
 
 
 def _directions(joint: JointIdentification) -> Iterator[str]:
-    cs, fs = joint.settings.reducer.output_orders
+    orders = joint.settings.reducer.output_orders
     for d in joint.directions:
         yield f"  {d.name}: {d.segments} strokes, {d.samples} samples" + (
             f"; a larger line at {d.rival:.0f}" if d.rival is not None else ""
         )
-        for name, order, place in (("circular spline", cs, 0), ("flexspline", fs, 1)):
+        for name, order, *row in zip(_SPLINES, orders, d.amplitude, d.std, d.chance, d.dominance, strict=True):
+            size, std, chance, dominance = row
             yield (
-                f"    {name:<16} {order:>5g}/rev  {d.amplitude[place]:.4g} ± {d.std[place]:.2g}, by chance "
-                f"{d.chance[place]:.1g}, the larger one with probability {d.dominance[place]:.3f}"
+                f"    {name:<16} {order:>5g}/rev  {size:.4g} ± {std:.2g}, by chance {chance:.1g}, the larger one with "
+                f"probability {dominance:.3f}"
             )
 
 
@@ -106,14 +105,7 @@ def _evidence(joint: JointIdentification, found: Identification) -> Iterator[str
         f"  from {math.degrees(found.travel):.0f}° of travel, {found.samples} samples; signal to noise "
         f"{found.signal_to_noise:.0f} dB, misfit {found.misfit:.2f}"
     )
-    named = {
-        "gaps": "gaps", "duplicates": "duplicates", "out_of_order": "out of order", "not_finite": "not finite",
-        "clipped": "clipped", "stuck": "stuck", "spikes": "spikes", "clock_jumps": "clock jumps",
-        "motion_faults": "bad joint states", "rejected": "rejected",
-    }  # fmt: skip
-    sums = quality_sums(joint.qualities)
-    wrong = ", ".join(f"{name} {sums[key]}" for key, name in named.items() if sums.get(key))
-    yield f"  {wrong or 'no faults in the data'}"
+    yield f"  {faults_in_words(quality_sums(joint.qualities))}"
 
 
 def _teeth(joint: JointIdentification) -> Iterator[str]:
@@ -125,7 +117,7 @@ def _teeth(joint: JointIdentification) -> Iterator[str]:
     if ranking.conclusive and not is_certain(ranking):
         yield "    only one of that pair's two lines stands out, and it fits another pair too: not conclusive"
     best = ranking.ranked[0].log_evidence
-    for pair in ranking.ranked[:_SHOWN]:
+    for pair in ranking.ranked[:SHOWN]:
         if math.isfinite(pair.log_evidence):
             behind = (best - pair.log_evidence) / math.log(10.0)
             yield (

@@ -1,10 +1,43 @@
 """A replay's result in a few lines of text, for the terminal."""
 
 import math
+from collections.abc import Mapping
+from dataclasses import asdict
+from typing import Any
 
 from ..diagnosis.verdict import Level
-from .percent import percent_with_std
 from .result import JointResult
+
+_FAULTS = {
+    "gaps": "gaps", "duplicates": "duplicates", "out_of_order": "out of order", "not_finite": "not finite",
+    "clipped": "clipped", "stuck": "stuck", "spikes": "spikes", "clock_jumps": "clock jumps",
+    "motion_faults": "bad joint states", "rejected": "rejected",
+}  # fmt: skip
+"""Names of the counters of a `Quality`."""
+
+
+def faults_in_words(counters: Mapping[str, Any]) -> str:
+    """List what is wrong with the data, by the counters of a `Quality`.
+
+    Examples
+    --------
+    >>> faults_in_words({"gaps": 2, "spikes": 0, "motion_faults": 1}), faults_in_words({})
+    ('gaps 2, bad joint states 1', 'no faults in the data')
+    """
+    named = (f"{name} {counters[key]}" for key, name in _FAULTS.items() if counters.get(key))
+    return ", ".join(named) or "no faults in the data"
+
+
+def percent_with_std(value: float, std: float) -> str:
+    """Write a fraction and its standard deviation in per cent, to the hundredth that still means something.
+
+    Examples
+    --------
+    >>> percent_with_std(0.10312, 0.00123), percent_with_std(0.0149, 0.00002)
+    ('10.31 ± 0.12 %', '1.49 ± <0.01 %')
+    """
+    shown = f"{100.0 * std:.2f}" if 100.0 * std >= 0.005 else "<0.01"
+    return f"{100.0 * value:.2f} ± {shown} %"
 
 
 def summarise(result: JointResult) -> str:
@@ -27,20 +60,7 @@ def summarise(result: JointResult) -> str:
             f"  from {math.degrees(found.travel):.0f}° of travel, signal to noise {found.signal_to_noise:.0f} dB",
         ]
     quality = last.quality
-    faults = {
-        "gaps": quality.gaps,
-        "duplicates": quality.duplicates,
-        "out of order": quality.out_of_order,
-        "not finite": quality.not_finite,
-        "clipped": quality.clipped,
-        "stuck": quality.stuck,
-        "spikes": quality.spikes,
-        "clock jumps": quality.clock_jumps,
-        "bad joint states": quality.motion_faults,
-        "rejected": quality.rejected,
-    }
-    wrong = ", ".join(f"{name} {count}" for name, count in faults.items() if count) or "no faults in the data"
     samples = "" if result.plan.settings.sensorless else f"{quality.samples} samples at {quality.rate:.1f} Hz, "
-    lines.append(f"  {samples}{quality.motion_messages} joint states; {wrong}")
+    lines.append(f"  {samples}{quality.motion_messages} joint states; {faults_in_words(asdict(quality))}")
     lines += [f"  note: {note}" for note in result.plan.notes]
     return "\n".join(lines)

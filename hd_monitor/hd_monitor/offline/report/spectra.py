@@ -46,6 +46,12 @@ def filled(values: FloatArray) -> FloatArray:
     return values - values.mean()
 
 
+def hann_amplitude(values: FloatArray) -> FloatArray:
+    """Peak amplitudes over the Fourier frequencies of evenly spaced values, under a Hann window."""
+    window = get_window("hann", values.size)
+    return np.asarray(2.0 * np.abs(np.fft.rfft(window * values)) / window.sum())
+
+
 def whole_runs(values: FloatArray) -> list[tuple[int, int]]:
     """Bounds of the stretches without a hole of more than a few samples; a lone spike left out is none."""
     missing = np.concatenate([[False], ~np.isfinite(values), [False]]).astype(np.int8)
@@ -58,9 +64,7 @@ def whole_runs(values: FloatArray) -> list[tuple[int, int]]:
 def amplitude_spectrum(record: Record) -> Spectrum:
     """Amplitude spectrum of θ'' [rad/s²] over frequency [Hz], Hann window."""
     values = filled(record.acceleration)
-    window = get_window("hann", values.size)
-    amplitude = 2.0 * np.abs(np.fft.rfft(window * values)) / window.sum()
-    return Spectrum(np.fft.rfftfreq(values.size, record.period), amplitude)
+    return Spectrum(np.fft.rfftfreq(values.size, record.period), hann_amplitude(values))
 
 
 def order_spectrum(angle: FloatArray, values: FloatArray, orders: FloatArray) -> Spectrum:
@@ -129,8 +133,7 @@ class OrderMapAccumulator:
             return
         revolutions = float(angle[-1] - angle[0]) * self._speeds.reducer.reduction / math.tau
         even = np.interp(np.linspace(angle[0], angle[-1], angle.size), angle, values)
-        window = get_window("hann", even.size)
-        amplitude = 2.0 * np.abs(np.fft.rfft(window * (even - even.mean()))) / window.sum()
+        amplitude = hann_amplitude(even - even.mean())
         orders = np.arange(amplitude.size) / revolutions
         if orders[1] >= self._STEP:
             shown = np.interp(self._orders, orders, amplitude, right=np.nan)

@@ -3,11 +3,10 @@
 from typing import NamedTuple
 
 import numpy as np
-from scipy.signal import get_window
 
 from ...acquisition.record import Record
 from ...arrays import FloatArray
-from .spectra import filled, whole_runs
+from .spectra import filled, hann_amplitude, whole_runs
 
 _BINS = 250
 _MOST_ROWS = 400
@@ -42,9 +41,7 @@ class WaterfallAccumulator:
         if len(whole_runs(record.acceleration)) != 1:
             return  # a bridged hole would show as vibration at all frequencies
         self._nyquist = self._nyquist or nyquist
-        values = filled(record.acceleration)
-        window = get_window("hann", values.size)
-        fine = 2.0 * np.abs(np.fft.rfft(window * values)) / window.sum()
+        fine = hann_amplitude(filled(record.acceleration))
         # Where a short record has fewer lines than there are bins, bins without one take their neighbour's.
         row = np.maximum.reduceat(fine, np.arange(_BINS) * fine.size // _BINS)
         first, last = record.start, record.start + record.period * len(record)
