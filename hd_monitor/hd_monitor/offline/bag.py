@@ -12,7 +12,7 @@ from typing import Self
 import yaml
 
 from .batches import Batch, RawMessage, RawTopic, in_batches
-from .compression import MAGIC, decompress_file, decompress_leniently
+from .compression import MAGIC, decompress, decompress_file
 from .errors import BagError, one_line
 from .salvage import Walk, restore_length, walk_through
 from .sqlite import WholeSqlite, has_unsaved_rows
@@ -40,8 +40,8 @@ class Bag:
     ----------
     path : Path
     topics : tuple of RawTopic
-    start, end : int or None
-        Times of recording of the first and the last message [ns]; None if the file does not say.
+    span : tuple of (int, int) or None
+        Times of recording of the first and the last message [ns]; None if the files do not say.
     notes : list of str
         What is wrong with the recording; grows while it is read.
 
@@ -54,8 +54,7 @@ class Bag:
     def __init__(self, path: str | Path) -> None:
         self.path = Path(path)
         self.notes: list[str] = []
-        self.start: int | None = None
-        self.end: int | None = None
+        self.span: tuple[int, int] | None = None
         self._stack = ExitStack()
         self._parts: list[tuple[Path, WholeMcap | WholeSqlite | Walk]] = []
         try:
@@ -114,13 +113,13 @@ class Bag:
         if self.path.is_file() and self.path.suffix not in STORAGE_SUFFIXES + COMPRESSED_SUFFIXES:
             if self.path.suffix == ".bag":
                 raise BagError(f"{self.path} is a ROS 1 bag; convert it first: rosbags-convert --src … --dst …")
-            raise BagError(f"{self.path} is no rosbag2 recording; give its folder, or its .mcap or .db3 file")
+            raise BagError(f"{self.path} is not a rosbag2 recording; give its folder, or its .mcap or .db3 file")
         try:
             files = self._files()
         except OSError as error:
             raise BagError(f"{self.path} cannot be read: {error.strerror}; check its permissions") from None
         if not files:
-            raise BagError(f"{self.path} is no rosbag2 recording: no .mcap or .db3 file is in it")
+            raise BagError(f"{self.path} is not a rosbag2 recording: it contains no .mcap or .db3 file")
         for file in files:
             try:
                 self._parts.append(self._part(file))
@@ -133,7 +132,7 @@ class Bag:
         whole = [reader for _, reader in self._parts if not isinstance(reader, Walk)]
         spans = [reader.span for reader in whole if reader.span]
         if spans and len(whole) == len(self._parts):
-            self.start, self.end = min(spans)[0], max(span[1] for span in spans)
+            self.span = min(spans)[0], max(end for _, end in spans)
         return _merged(topic for _, reader in self._parts for topic in reader.topics())
 
     def _files(self) -> list[Path]:
@@ -205,7 +204,7 @@ def _salvaged(walk: Walk, wanted: Collection[str], delivered: Counter[str]) -> I
         data = message.data
         if data.startswith(MAGIC):
             try:
-                data = decompress_leniently("zstd", data)
+                data = decompress("zstd", data, whole=False)
             except Exception:  # a damaged message is missing: the gap is counted further on
                 continue
         if delivered[message.topic]:

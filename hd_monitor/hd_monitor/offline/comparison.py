@@ -11,7 +11,7 @@ from .result import plain
 from .summary import percent_with_std
 
 SIGNIFICANT = 0.01
-"""Probability below which a change is no accident of the noise."""
+"""Probability below which a change is not an accident of the noise."""
 SMALL = 0.002
 """Change of an index (fraction of the stiffness) that matters to nobody, however significant."""
 

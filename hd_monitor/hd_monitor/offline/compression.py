@@ -36,30 +36,20 @@ def _parts(kind: str, pieces: Iterable[bytes]) -> Iterator[bytes]:
         raise ValueError("its compressed data is cut off")
 
 
-def decompress(kind: str, data: bytes) -> bytes:
+def decompress(kind: str, data: bytes, *, whole: bool = True) -> bytes:
     """Return the contents of a chunk or a message, by the name of its compression.
 
     Raises
     ------
     ValueError
-        If the kind is neither ``''``, ``'zstd'`` nor ``'lz4'``, or the data is cut off.
+        If the kind is neither ``''``, ``'zstd'`` nor ``'lz4'``, or the data is cut off; unless `whole`, what precedes
+        the cut is returned instead.
     Exception
         If the data is damaged; the class is the module's own.
     """
-    return b"".join(_parts(kind, [data])) if kind else data
-
-
-def decompress_leniently(kind: str, data: bytes) -> bytes:
-    """Return as much of the contents of a chunk or a message as there is before a cut.
-
-    Raises
-    ------
-    ValueError
-        If the kind is neither ``''``, ``'zstd'`` nor ``'lz4'``.
-    Exception
-        If the data is damaged; the class is the module's own.
-    """
-    return bytes(_decompressor(kind).decompress(data)) if kind else data
+    if not kind:
+        return data
+    return b"".join(_parts(kind, [data])) if whole else bytes(_decompressor(kind).decompress(data))
 
 
 def decompress_where_packed(messages: list[bytes]) -> list[bytes]:

@@ -43,8 +43,6 @@ class JointIdentification:
         Recordings with usable data.
     found : Identification or None
         None if there was not enough motion.
-    directions : tuple of DirectionEvidence
-        Sensorless only.
     teeth : ToothPairRanking or None
         None if there was no motion at all.
     last : Assessment or None
@@ -60,7 +58,6 @@ class JointIdentification:
     tooth_check: ToothCheck
     bags: list[str] = field(default_factory=list)
     found: Identification | None = None
-    directions: tuple[DirectionEvidence, ...] = ()
     teeth: ToothPairRanking | None = None
     last: Assessment | None = None
     qualities: list[Quality] = field(default_factory=list)
@@ -70,6 +67,11 @@ class JointIdentification:
     def settings(self) -> JointSettings:
         """The joint's settings."""
         return self.plan.settings
+
+    @property
+    def directions(self) -> tuple[DirectionEvidence, ...]:
+        """What each direction of motion tells; sensorless only."""
+        return self.identifier.directions if isinstance(self.identifier, SensorlessIdentifier) else ()
 
     @property
     def unusable(self) -> str:
@@ -119,8 +121,6 @@ def identify(
                 note(f"{path}: {sentence}" if len(paths) > 1 else sentence)
     for joint in joints.values():
         joint.found = joint.identifier.finish()
-        if isinstance(joint.identifier, SensorlessIdentifier):
-            joint.directions = joint.identifier.directions
         joint.teeth = joint.tooth_check.ranking()
     complaints = [joint.unusable for joint in joints.values() if joint.unusable]
     if len(complaints) == len(joints):

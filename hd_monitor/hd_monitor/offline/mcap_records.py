@@ -74,14 +74,12 @@ def parse_chunk(body: bytes) -> Chunk:
 
 
 def read_chunk(file: BinaryIO, index: ChunkIndex) -> bytes:
-    """Read the chunk that an index record describes; return its content, decompressed.
+    """Read the chunk that an index record describes; return its content, as `checked_content` does.
 
     Raises
     ------
     DamageError
-        If the file ends before the chunk does, or the content's size or checksum is not the one announced.
-    Exception
-        If it cannot be decompressed; the class is the decompressor's own.
+        If the file ends before the chunk does.
     """
     file.seek(index.chunk_start_offset + _HEAD.size)
     chunk = parse_chunk(file.read(max(index.chunk_length - _HEAD.size, 0)))
@@ -91,14 +89,12 @@ def read_chunk(file: BinaryIO, index: ChunkIndex) -> bytes:
 
 
 def checked_content(chunk: Chunk) -> bytes:
-    """Return a chunk's content, decompressed.
+    """Return a chunk's content, decompressed; raise as `decompress` if it cannot be.
 
     Raises
     ------
     DamageError
         If its size or its checksum is not the one announced.
-    Exception
-        If it cannot be decompressed; the class is the decompressor's own.
     """
     content = decompress(chunk.compression, chunk.data)
     if len(content) != chunk.uncompressed_size:

@@ -45,14 +45,14 @@ def load_parameters(path: Path, node: str | None = None) -> dict[str, Any]:
     Raises
     ------
     ParameterError
-        If the file cannot be read, is no such YAML, or does not say whose parameters are meant.
+        If the file cannot be read, is not such YAML, or does not say whose parameters are meant.
     """
     try:
         content = yaml.load(path.read_text(encoding="utf-8"), _Loader)
     except OSError as error:
         raise ParameterError(f"{path} cannot be read: {error.strerror}; check the path") from None
     except (yaml.YAMLError, UnicodeDecodeError) as error:
-        raise ParameterError(f"{path} is no YAML: {' '.join(str(error).split())}") from None
+        raise ParameterError(f"{path} is not valid YAML: {' '.join(str(error).split())}") from None
     if content is None:
         return {}
     if not isinstance(content, Mapping):
@@ -72,7 +72,7 @@ def parse_override(text: str) -> tuple[str, Any]:
     Raises
     ------
     ParameterError
-        If there is no ``:=`` in it or the value is no YAML.
+        If there is no ``:=`` in it or the value is not valid YAML.
     """
     name, mark, value = text.partition(":=")
     if not mark or not name:
@@ -80,7 +80,7 @@ def parse_override(text: str) -> tuple[str, Any]:
     try:
         return name, yaml.load(value, _Loader)
     except yaml.YAMLError as error:
-        raise ParameterError(f"the value in {text!r} is no YAML: {' '.join(str(error).split())}") from None
+        raise ParameterError(f"the value in {text!r} is not valid YAML: {' '.join(str(error).split())}") from None
 
 
 def _sections(content: Mapping[Any, Any], above: str) -> Iterator[tuple[str, Mapping[str, Any]]]:

@@ -44,7 +44,7 @@ class JointPlan:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Request:
-    """What the user asked for.
+    """What the user requested.
 
     Attributes
     ----------
@@ -72,7 +72,7 @@ def plan(bag: Bag, request: Request) -> list[JointPlan]:
     BagError
         If a topic is missing or ambiguous.
     ParameterError
-        If the parameters are wrong, or a joint asked for is none of theirs.
+        If the parameters are wrong, or a joint requested is not one of theirs.
     """
     finder = TopicFinder(
         bag.topics, lambda topic: array_labels(bag, topic), namespace=request.namespace, remap=request.remap

@@ -2,7 +2,6 @@
 
 import sys
 import time
-from typing import TextIO
 
 from ..contract import NANOSECONDS
 from .bag import Bag, Window
@@ -14,18 +13,16 @@ _FIRST = 1.0
 
 
 class ProgressLine:
-    """Writes how far a replay is; to be called after each window of messages.
+    """Writes to standard error how far a replay is; to be called after each window of messages.
 
     Parameters
     ----------
     bag : Bag
-    stream : text file, optional
-        Standard error by default.
     """
 
-    def __init__(self, bag: Bag, stream: TextIO | None = None) -> None:
+    def __init__(self, bag: Bag) -> None:
         self._bag = bag
-        self._stream = stream if stream is not None else sys.stderr
+        self._stream = sys.stderr
         self._terminal = self._stream.isatty()
         self._began = time.monotonic()
         self._next = self._began + (_FIRST if self._terminal else _ELSEWHERE)
@@ -42,9 +39,9 @@ class ProgressLine:
         self._next = now + (_ON_TERMINAL if self._terminal else _ELSEWHERE)
         done = (window.end - self._first) / NANOSECONDS
         text = f"{done:.0f} s of the recording, {done / (now - self._began):.0f} times real time"
-        if self._bag.start is not None and self._bag.end is not None and self._bag.end > self._bag.start:
-            share = (window.end - self._bag.start) / (self._bag.end - self._bag.start)
-            text = f"{min(share, 1.0):4.0%}: {text}"
+        first, last = self._bag.span or (0, 0)
+        if last > first:
+            text = f"{min((window.end - first) / (last - first), 1.0):4.0%}: {text}"
         self._stream.write(f"\r\x1b[2K{text}" if self._terminal else f"{text}\n")
         self._stream.flush()
         self._shown = True

@@ -35,10 +35,11 @@ def verdict_entry(assessment: Assessment) -> dict[str, Any]:
         "level_name": Level(verdict.level).name,
         "fault_code": verdict.fault_code.value,
         "reason": verdict.reason,
-        "flexspline_index": found.index.flexspline if found else None,
-        "flexspline_index_std": found.index_std.flexspline if found else None,
-        "circular_spline_index": found.index.circular_spline if found else None,
-        "circular_spline_index_std": found.index_std.circular_spline if found else None,
+        **{
+            f"{spline}_{name}": getattr(getattr(found, name), spline) if found else None
+            for spline in ("flexspline", "circular_spline")
+            for name in ("index", "index_std")
+        },
         "travel_deg": math.degrees(found.travel) if found else 0.0,
         "samples": quality.samples,
         "gaps": quality.gaps,
@@ -50,10 +51,8 @@ def line_entries(found: Identification | None) -> list[dict[str, Any]]:
     return [
         {
             "k": line.k,
-            "circular_spline": line.amplitude.circular_spline,
-            "flexspline": line.amplitude.flexspline,
-            "circular_spline_std": line.std.circular_spline,
-            "flexspline_std": line.std.flexspline,
+            **line.amplitude._asdict(),
+            **{f"{spline}_std": std for spline, std in line.std._asdict().items()},
         }
         for line in (found.lines if found else ())
     ]

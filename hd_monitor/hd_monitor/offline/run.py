@@ -34,7 +34,7 @@ class Outcome:
     notes : list of str
         What is wrong with the recording or one of its joints.
     collectors : mapping of str to Collector
-        By joint; empty unless a report was asked for.
+        By joint; empty unless a report was requested.
     """
 
     content: dict[str, Any]

@@ -18,7 +18,7 @@ from mcap.opcode import Opcode
 
 from . import mcap_records, sqlite
 from .batches import RawMessage, RawTopic
-from .compression import decompress_leniently
+from .compression import decompress
 from .errors import BagError, one_line
 from .mcap_records import Channels, DamageError, Records, bare_message, heads, parse_chunk
 
@@ -119,7 +119,7 @@ class McapWalk(Walk):
     def _chunk(self, body: bytes, note: Note) -> Iterator[tuple[int, int, bytes]]:
         try:
             chunk = parse_chunk(body)
-            content = decompress_leniently(chunk.compression, chunk.data)
+            content = decompress(chunk.compression, chunk.data, whole=False)
         except Exception as error:  # the decompressors raise whatever their authors chose
             note(f"{self._path.name}: a damaged chunk was left out ({one_line(error)})")
             return iter(())
@@ -164,7 +164,7 @@ class SqliteWalk(Walk):
             with closing(sqlite.connect(path)) as database:
                 rows = database.execute("SELECT id, name, type FROM topics").fetchall()
             self._topics = {int(number): (str(name), str(kind)) for number, name, kind in rows}
-        except Exception as error:  # a damaged file also yields text that is none and numbers that are none
+        except Exception as error:  # a damaged file also yields invalid text and numbers
             reason = f"{path} is damaged in its list of topics ({one_line(error)}); give another recording"
             raise BagError(reason) from None
 
@@ -179,5 +179,5 @@ class SqliteWalk(Walk):
                 ):
                     if number in self._topics and isinstance(time, int) and isinstance(data, bytes):
                         yield self._topics[number], time, data
-        except Exception as error:  # a damaged file also yields text that is none
+        except Exception as error:  # a damaged file also yields invalid text
             note(f"{self._path.name} is damaged ({one_line(error)}): what follows cannot be read")

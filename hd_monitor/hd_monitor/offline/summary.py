@@ -11,7 +11,7 @@ from .result import JointResult
 _FAULTS = {
     "gaps": "gaps", "duplicates": "duplicates", "out_of_order": "out of order", "not_finite": "not finite",
     "clipped": "clipped", "stuck": "stuck", "spikes": "spikes", "clock_jumps": "clock jumps",
-    "motion_faults": "bad joint states", "rejected": "rejected",
+    "motion_faults": "bad joint states", "torque_faults": "bad torque samples", "rejected": "rejected",
 }  # fmt: skip
 """Names of the counters of a `Quality`."""
 

@@ -34,7 +34,7 @@ def windows(batches: Iterable[Batch], *, length: int, most: int, pause: int) -> 
     opened = latest = count = 0
     for batch in batches:
         times = batch.times
-        # Unsigned times that go back look like a pause; that parts the work there, but not the window.
+        # Unsigned times that go back look like a pause; that splits the work there, but not the window.
         pauses = np.flatnonzero(times[1:] - times[:-1] >= pause) + 1
         at = 0
         while at < len(times):

@@ -172,7 +172,7 @@ def test_json_to_standard_output_is_nothing_but_json(arm: Path, capsys: pytest.C
     ("arguments", "words"),
     [
         (["{none}"], "does not exist"),
-        (["{text}"], "no rosbag2 recording"),
+        (["{text}"], "not a rosbag2 recording"),
         (["{bag}", "{none}", *ARM], "does not exist"),
         (["{bag}"], "input.source"),
         (["{bag}", *ARM[:-1], "wrist"], "'wrist' is not in joint_states, which carries elbow"),

@@ -96,7 +96,7 @@ def test_fail_on_error_lets_a_warning_pass(recording: Path) -> None:
     ("arguments", "words"),
     [
         (["{none}"], "does not exist"),
-        (["{text}"], "no rosbag2 recording"),
+        (["{text}"], "not a rosbag2 recording"),
         (["{bag}", "--joint", "elbow"], "'elbow' is not in joint_states, which carries joint"),
         (["{bag}", "-p", "input.source:=imu"], "no imu/data_raw (sensor_msgs/Imu) was recorded"),
         (["{bag}", "--remap", "joint_states:=/nowhere"], "no /nowhere (sensor_msgs/JointState) was recorded"),

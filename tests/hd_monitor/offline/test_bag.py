@@ -7,6 +7,7 @@ from collections import Counter
 from pathlib import Path
 
 import pytest
+import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.hd_monitor.offline import recordings as rec
@@ -128,15 +129,33 @@ def test_a_folder_of_several_files_is_read_in_their_order(tmp_path: Path) -> Non
     assert times == sorted(times)
 
 
+def test_a_damaged_file_of_a_folder_costs_no_other(tmp_path: Path) -> None:
+    folder = tmp_path / "splits"
+    folder.mkdir()
+    events = sorted(rec.small(9.0), key=lambda event: event.time)
+    for number in range(3):
+        part = rec.write(tmp_path / f"part_{number}", events[number * 330 : number * 330 + 330])
+        shutil.copy(rec.storage_file(part), folder / f"splits_{number}.mcap")
+    middle = folder / "splits_1.mcap"
+    middle.write_bytes(middle.read_bytes()[:-40])
+    names = [f"splits/splits_{number}.mcap" for number in range(4)]  # the last one is not there
+    metadata = {"rosbag2_bagfile_information": {"relative_file_paths": names}}
+    (folder / "metadata.yaml").write_text(yaml.safe_dump(metadata))
+    counts, notes = contents(folder)
+    assert counts == {STATES: 900, BLOCKS: 90}
+    assert all(words in " ".join(notes) for words in ("splits_3.mcap missing", "splits_1.mcap is not whole"))
+    assert not any("splits_0" in note or "splits_2" in note for note in notes)
+
+
 @pytest.mark.parametrize(
     ("make", "words"),
     [
         (lambda path: None, "does not exist"),
         (lambda path: path.mkdir(), "no .mcap or .db3 file"),
-        (lambda path: path.write_text("hello"), "no rosbag2 recording"),
+        (lambda path: path.write_text("hello"), "not a rosbag2 recording"),
     ],
 )
-def test_what_is_no_recording_is_refused_in_one_line(tmp_path: Path, make: object, words: str) -> None:
+def test_anything_but_a_recording_is_refused_in_one_line(tmp_path: Path, make: object, words: str) -> None:
     path = tmp_path / "thing"
     make(path)  # type: ignore[operator]
     with pytest.raises(BagError, match=words) as caught:

@@ -27,7 +27,7 @@ def test_chance_is_called_significant_once_in_a_hundred() -> None:
     assert 10 <= false <= 52
 
 
-def test_a_significant_change_too_small_to_care_is_said_to_be_none() -> None:
+def test_a_significant_change_too_small_to_matter_is_called_so() -> None:
     (change,) = compare(result(cs=0.0500, std=1e-6), result(cs=0.0505, std=1e-6))
     assert change.indexes[0].significant
     assert "circular spline's index hardly changed" in change.sentences[1]

@@ -1,8 +1,8 @@
-"""What is taken as whole is whole; what is cut off still gives what precedes the cut, where that is asked for."""
+"""Whole data decompresses whole; data that is cut off gives what precedes the cut, where the caller permits that."""
 
 import pytest
 
-from hd_monitor.offline.compression import decompress, decompress_leniently, decompress_where_packed
+from hd_monitor.offline.compression import decompress, decompress_where_packed
 
 lz4 = pytest.importorskip("lz4.frame")
 zstd = pytest.importorskip("backports.zstd")
@@ -12,16 +12,16 @@ PACKED = {"zstd": zstd.compress(TEXT), "lz4": lz4.compress(TEXT)}
 
 
 @pytest.mark.parametrize("kind", ["zstd", "lz4"])
-def test_both_ways_agree_on_what_is_whole(kind: str) -> None:
-    assert decompress(kind, PACKED[kind]) == decompress_leniently(kind, PACKED[kind]) == TEXT
+def test_both_ways_agree_on_whole_data(kind: str) -> None:
+    assert decompress(kind, PACKED[kind]) == decompress(kind, PACKED[kind], whole=False) == TEXT
     assert decompress(kind, 2 * PACKED[kind]) == 2 * TEXT
 
 
 @pytest.mark.parametrize("kind", ["zstd", "lz4"])
-def test_what_is_cut_off_is_whole_to_none_but_the_lenient(kind: str) -> None:
+def test_data_cut_off_is_refused_unless_the_caller_permits_it(kind: str) -> None:
     part = PACKED[kind][: len(PACKED[kind]) // 2]
-    assert TEXT.startswith(decompress_leniently(kind, part))
-    assert len(decompress_leniently(kind, part)) > 1000
+    assert TEXT.startswith(decompress(kind, part, whole=False))
+    assert len(decompress(kind, part, whole=False)) > 1000
     with pytest.raises(ValueError, match="cut off"):
         decompress(kind, part)
     with pytest.raises(ValueError, match="cut off"):
@@ -34,5 +34,5 @@ def test_an_unknown_compression_is_named() -> None:
         decompress("brotli", TEXT)
 
 
-def test_only_packed_messages_are_unpacked() -> None:
+def test_only_compressed_messages_are_decompressed() -> None:
     assert decompress_where_packed([b"\0\1", PACKED["zstd"], b""]) == [b"\0\1", TEXT, b""]

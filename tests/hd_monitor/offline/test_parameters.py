@@ -43,7 +43,7 @@ def test_one_star_stands_for_one_level(tmp_path: Path) -> None:
         load(tmp_path, text, "/a/b/hd_monitor_node")
 
 
-def test_two_monitors_must_be_told_apart(tmp_path: Path) -> None:
+def test_two_monitors_must_be_distinguished(tmp_path: Path) -> None:
     text = f"/left/hd_monitor_node: {BODY}\n/right/hd_monitor_node:\n{BASE}"
     with pytest.raises(ParameterError, match="--node"):
         load(tmp_path, text)
@@ -65,7 +65,7 @@ def test_numbers_are_read_as_ros_reads_them(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("text", ["a: [1", "- 1\n- 2", "just words"])
-def test_what_is_no_parameter_file_is_refused_in_one_line(tmp_path: Path, text: str) -> None:
+def test_anything_but_a_parameter_file_is_refused_in_one_line(tmp_path: Path, text: str) -> None:
     with pytest.raises(ParameterError) as caught:
         load(tmp_path, text)
     assert "\n" not in str(caught.value)

@@ -83,7 +83,7 @@ def test_line_amplitudes_come_out_at_each_speed_with_calibrated_errors() -> None
     assert abs(np.mean(trials)) < 0.25
 
 
-def test_speeds_whose_travel_does_not_part_the_lines_are_left_out() -> None:
+def test_speeds_whose_travel_does_not_separate_the_lines_are_left_out() -> None:
     lines = LinesBySpeed(SPEEDS, 2)
     lines.add(steady(400.0, 0.5))  # 15 degrees
     assert lines.result() == []

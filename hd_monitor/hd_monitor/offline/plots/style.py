@@ -1,4 +1,4 @@
-"""One look for all plots: legible, on white, told apart by shape as well as by colours that all eyes can tell apart."""
+"""One look for all plots: legible, on white, distinct in shape as well as in colours that every eye can distinguish."""
 
 import io
 from collections.abc import Iterator

@@ -32,7 +32,9 @@ def verdict_picture(zoom: ZoomSpectrum, *, title: str, subtitle: str) -> Figure:
         pairs = zip((CIRCULAR_SPLINE, FLEXSPLINE), zoom.lines, zoom.line_amplitudes, ("right", "left"), strict=True)
         for look, frequency, amplitude, side in pairs:
             _mark(axes, look, frequency, amplitude, side)
-        note = f"line pair k = {zoom.k}" + ("" if zoom.resolved else "; too short a record to part the two lines")
+        note = f"line pair k = {zoom.k}" + (
+            "" if zoom.resolved else "; the record is too short to separate the two lines"
+        )
         axes.annotate(
             f"{subtitle}   {note}", (0.0, 1.0), xycoords="axes fraction", xytext=(0, 3), textcoords="offset points",
             fontsize=9, color=SOFT, va="bottom",

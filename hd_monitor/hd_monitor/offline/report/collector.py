@@ -8,7 +8,6 @@ from ...acquisition.record import JointSamples
 from ...arrays import FloatArray
 from ...assessment import Assessment
 from ...contract import NANOSECONDS
-from ...orders.zoom import ZoomSpectrum
 from ...settings import JointSettings
 from .lines_by_speed import LinesBySpeed
 from .spectra import OrderMapAccumulator, filled
@@ -31,13 +30,11 @@ class Collector:
     ----------
     best : Assessment or None
         The newest assessment whose zoom spectrum shows the lines about as high as any other.
-    zoom : ZoomSpectrum or None
-        Its zoom spectrum.
     order_map : OrderMapAccumulator
     lines : LinesBySpeed
     waterfall : WaterfallAccumulator
-    first, last : int
-        Stamps of the first and the last assessment [ns]; 0 if there is none.
+    seconds : float
+        Stamps covered [s].
     motion_seconds : float
         Time in which joint states came [s].
     """
@@ -45,23 +42,22 @@ class Collector:
     def __init__(self, settings: JointSettings) -> None:
         reducer, harmonics = settings.reducer, settings.analysis.harmonics
         speeds = SpeedBins(reducer, settings.analysis.rms_bin_width, settings.analysis.minimum_speed)
-        self._source = settings.input.source
         self.settings = settings
         highest = harmonics * max(reducer.circular_spline_order, reducer.flexspline_order) + 1.0
         self.order_map = OrderMapAccumulator(speeds, highest)
         self.lines = LinesBySpeed(speeds, harmonics)
         self.waterfall = WaterfallAccumulator()
         self.best: Assessment | None = None
-        self.zoom: ZoomSpectrum | None = None
-        self.first = self.last = 0
+        self._first: int | None = None
+        self.seconds = 0.0
         self.motion_seconds = 0.0
         self._tail: deque[tuple[FloatArray, FloatArray]] = deque()
         self._kept = 0
 
     def add(self, assessment: Assessment) -> None:
         """Take the next assessment."""
-        self.first = self.first or assessment.stamp
-        self.last = assessment.stamp
+        self._first = self._first or assessment.stamp
+        self.seconds = (assessment.stamp - self._first) / NANOSECONDS
         for record in assessment.records:
             self.order_map.add(record)
             self.lines.add(record)
@@ -72,9 +68,8 @@ class Collector:
             self.motion_seconds += float(joint.times[-1] - joint.times[0]) * len(joint) / (len(joint) - 1)
             if self.settings.sensorless:
                 self._keep_joint(joint)
-        zoom = assessment.zoom
-        if zoom is not None and (self.zoom is None or _height(zoom) >= _AS_GOOD * _height(self.zoom)):
-            self.best, self.zoom = assessment, zoom
+        if assessment.zoom is not None and _height(assessment) >= _AS_GOOD * _height(self.best):
+            self.best = assessment
 
     def tail(self) -> tuple[FloatArray, FloatArray]:
         """Output angle [rad] and vibration signal of the recording's last minutes."""
@@ -83,14 +78,9 @@ class Collector:
         angles, values = zip(*self._tail, strict=True)
         return np.concatenate(angles), np.concatenate(values)
 
-    @property
-    def seconds(self) -> float:
-        """Stamps covered [s]."""
-        return (self.last - self.first) / NANOSECONDS
-
     def _keep_joint(self, joint: JointSamples) -> None:
         """Keep a sensorless signal without its slow part: friction and gravity."""
-        values = joint.effort if self._source == "joint_effort" else joint.speed
+        values = joint.effort if self.settings.input.source == "joint_effort" else joint.speed
         known = np.isfinite(values)
         if int(known.sum()) > 2 * _SLOW_DEGREE and float(np.ptp(joint.times)) > 0.0:
             slow = np.polynomial.Legendre.fit(joint.times[known], values[known], _SLOW_DEGREE)
@@ -103,6 +93,7 @@ class Collector:
             self._kept -= self._tail.popleft()[1].size
 
 
-def _height(zoom: ZoomSpectrum) -> float:
-    """Height of the lines, of less worth where they are not parted."""
-    return max(zoom.line_amplitudes) * (1.0 if zoom.resolved else 0.1)
+def _height(assessment: Assessment | None) -> float:
+    """Height of the zoom spectrum's lines, worth less where they are not separated; 0 without one."""
+    zoom = assessment.zoom if assessment is not None else None
+    return 0.0 if zoom is None else max(zoom.line_amplitudes) * (1.0 if zoom.resolved else 0.1)

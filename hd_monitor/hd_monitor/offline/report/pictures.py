@@ -24,8 +24,8 @@ from .spectra import amplitude_spectrum, order_spectrum
 FEWEST_SPEEDS = 3
 """Speeds from which on something is drawn over speed."""
 _ORDERS_SHOWN = 1201
-_PARTING_TRAVEL = 360.0
-"""Output travel [°] that parts the first pair under a Hann window."""
+_SEPARATING_TRAVEL = 360.0
+"""Output travel [°] that separates the first pair under a Hann window."""
 _UNITS = {"joint_effort": "effort, as reported", "joint_velocity": "rad/s"}
 
 
@@ -84,10 +84,11 @@ class _View:
 
 
 def _zoom(view: _View) -> Figure | None:
-    if view.collector.zoom is None:
+    zoom = view.collector.best.zoom if view.collector.best is not None else None
+    if zoom is None:
         return None
-    first_sentence = view.last.verdict.reason.partition(";")[0]
-    return verdict_picture(view.collector.zoom, title=first_sentence, subtitle=f"zoom spectrum at {view.rpm:.0f} rpm")
+    title = view.last.verdict.reason.partition(";")[0]  # its first sentence
+    return verdict_picture(zoom, title=title, subtitle=f"zoom spectrum at {view.rpm:.0f} rpm")
 
 
 def _orders(view: _View) -> Figure | None:
@@ -101,8 +102,8 @@ def _orders(view: _View) -> Figure | None:
     spectrum = order_spectrum(angle, values, axis)
     unit = unit_of(view.collector.settings.input.source)
     travel = float(np.degrees(np.ptp(angle)))
-    # A Hann window parts lines that are two of its cycles apart; the pair is 2k cycles apart in a revolution.
-    note = "" if travel * k >= _PARTING_TRAVEL else f"{travel:.0f}° of travel do not part the lines"
+    # A Hann window separates lines that are two of its cycles apart; the pair is 2k cycles apart in a revolution.
+    note = "" if travel * k >= _SEPARATING_TRAVEL else f"{travel:.0f}° of travel do not separate the lines"
     return order_plot(spectrum, pair, title=f"Order spectrum, line pair k = {k}", unit=unit, note=note)
 
 

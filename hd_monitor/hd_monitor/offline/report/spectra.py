@@ -53,7 +53,7 @@ def hann_amplitude(values: FloatArray) -> FloatArray:
 
 
 def whole_runs(values: FloatArray) -> list[tuple[int, int]]:
-    """Bounds of the stretches without a hole of more than a few samples; a lone spike left out is none."""
+    """Bounds of the stretches without a hole of more than a few samples; a lone spike left out does not count."""
     missing = np.concatenate([[False], ~np.isfinite(values), [False]]).astype(np.int8)
     edges = np.flatnonzero(np.diff(missing))
     holes = [(a, b) for a, b in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True) if b - a > _SMALL_HOLE]
@@ -91,7 +91,7 @@ def order_spectrum(angle: FloatArray, values: FloatArray, orders: FloatArray) ->
     angle, values, way = angle[good], values[good], way[good]
     if angle.size < 2:
         return Spectrum(orders, np.zeros_like(orders))
-    way = np.minimum(way, 4.0 * float(np.median(way)))  # a hole in the data is no way travelled by one sample
+    way = np.minimum(way, 4.0 * float(np.median(way)))  # one sample has not travelled the way across a hole in the data
     first, span = float(angle.min()), float(np.ptp(angle)) or 1.0
     weight = way * (0.5 - 0.5 * np.cos(math.tau * (angle - first) / span))
     signal = weight * values

@@ -1,4 +1,4 @@
-"""Bins of wave-generator speed, by which a report's analyses part the records of a run."""
+"""Bins of wave-generator speed, by which a report's analyses divide the records of a run."""
 
 import math
 from dataclasses import dataclass
