@@ -12,8 +12,9 @@ import argparse
 import contextlib
 import sys
 import time
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections import Counter
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from unittest import mock
 
@@ -95,45 +96,47 @@ MECHANISMS: dict[str, tuple[str, Patch]] = {
 }
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Row:
+@dataclass(slots=True, kw_only=True)
+class Outcome:
     """What an estimator made of all cases."""
 
-    seconds: float
-    error: float
-    cover: float
-    right: int
-    wrong: int
-    undetermined: int
+    seconds: float = 0.0
+    errors: list[float] = field(default_factory=list)
+    inside: list[bool] = field(default_factory=list)
+    verdicts: Counter[str] = field(default_factory=Counter)
 
-
-def run(cases: Sequence[tuple[Case, list[Record]]]) -> Row:
-    """Identify and judge all cases."""
-    seconds, errors, inside, counts = 0.0, [], [], {"right": 0, "wrong": 0, "undetermined": 0}
-    for case, records in cases:
+    def add(self, case: Case, records: Sequence[Record]) -> None:
+        """Identify and judge a case."""
         settings = case.settings(**{"diagnosis.confirm_count": 1, "diagnosis.confirm_window": 1})
         start = time.process_time()
         identifier = Identifier(settings)
         for record in records:
             identifier.add(record)
         found = identifier.finish()
-        seconds += time.process_time() - start
+        self.seconds += time.process_time() - start
         named = Judge(settings).judge(found, "").component
-        counts["undetermined" if named is Component.UNDETERMINED else "right" if named is case.truth else "wrong"] += 1
+        right = "right" if named is case.truth else "wrong"
+        self.verdicts["undetermined" if named is Component.UNDETERMINED else right] += 1
         if found is not None and not found.relative:
             error = np.abs(np.subtract(found.index, case.index))
-            errors.extend(error.tolist())
-            inside.extend((error < 1.96 * np.asarray(found.index_std)).tolist())
-    return Row(seconds=seconds, error=float(np.median(errors)), cover=float(np.mean(inside)), **counts)
+            self.errors.extend(error.tolist())
+            self.inside.extend((error < 1.96 * np.asarray(found.index_std)).tolist())
+
+    def row(self, whole: "Outcome") -> str:
+        """Figures of a row, in relation to those of the whole estimator on the same cases."""
+        counts = "".join(f"{self.verdicts[kind]:7d}" for kind in ("right", "wrong", "undetermined"))
+        error = np.median(self.errors) / np.median(whole.errors)
+        return f"{self.seconds / whole.seconds:6.2f} {error:6.2f} {np.mean(self.inside):6.1%}{counts}"
 
 
-def rows(cases: Sequence[tuple[Case, list[Record]]], names: Sequence[str]) -> Iterator[tuple[str, str, Row]]:
-    """Yield the whole estimator, then each mechanism switched off."""
-    yield "nothing", "the whole estimator", run(cases)
-    for name in names:
-        text, patch = MECHANISMS[name]
+def compare(cases: Sequence[tuple[Case, list[Record]]], patch: Patch) -> tuple[Outcome, Outcome]:
+    """Run the whole estimator and one without a mechanism in turn, so that the machine's pace hits both alike."""
+    whole, without_it = Outcome(), Outcome()
+    for case, records in cases:
+        whole.add(case, records)
         with patch():
-            yield name, text, run(cases)
+            without_it.add(case, records)
+    return whole, without_it
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -146,15 +149,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     set_up_process()
     cases = [random_case(np.random.default_rng([options.seed, number])) for number in range(options.cases)]
     simulated = [(case, simulate(case)) for case in cases]
-    whole: Row | None = None
-    print(f"{'switched off':26} {'CPU':>6} {'error':>6} {'cover':>6} {'right':>6} {'wrong':>6} {'undet.':>6}")
-    for name, text, row in rows(simulated, options.only or list(MECHANISMS)):
-        whole = whole or row
-        print(
-            f"{name:26} {row.seconds / whole.seconds:6.2f} {row.error / whole.error:6.2f} {row.cover:6.1%} "
-            f"{row.right:6d} {row.wrong:6d} {row.undetermined:6d}  {text}",
-            flush=True,
-        )
+    print(f"{'switched off':26} {'CPU':>6} {'error':>6} {'cover':>6}  right  wrong undet.")
+    for number, name in enumerate(options.only or MECHANISMS):
+        text, patch = MECHANISMS[name]
+        whole, without_it = compare(simulated, patch)
+        if not number:
+            print(f"{'nothing':26} {whole.row(whole)}")
+        print(f"{name:26} {without_it.row(whole)}  {text}", flush=True)
     return 0
 
 
