@@ -9,7 +9,7 @@ from .acquisition.quality import Quality
 from .acquisition.record import JointSamples, Record
 from .diagnosis.verdict import Verdict
 from .identification.result import Identification
-from .orders.rms_curve import RmsCurve
+from .orders.rms_curve import SpeedBin
 from .orders.steady import join
 from .orders.zoom import ZoomSpectrum, zoom_spectrum
 from .reducer import Reducer
@@ -31,7 +31,8 @@ class Assessment:
     steady_parts : tuple of Record
         The newest stretch at an almost constant speed, in pieces; none while the joint does not turn steadily.
     reducer : Reducer
-    rms_curve : RmsCurve
+    rms_curve : tuple of SpeedBin
+        RMS [m/s²] by speed, since the start.
     quality : Quality
         Counters of what came in, since the start.
     speed : float
@@ -58,7 +59,7 @@ class Assessment:
     identification: Identification | None
     steady_parts: tuple[Record, ...]
     reducer: Reducer
-    rms_curve: RmsCurve
+    rms_curve: tuple[SpeedBin, ...]
     quality: Quality
     speed: float
     rms: float

@@ -13,7 +13,7 @@ from .identification.identifier import Identifier
 from .identification.limitation import Limitation
 from .identification.result import Identification
 from .identification.sensorless.identifier import SensorlessIdentifier
-from .orders.rms_curve import RmsAccumulator, RmsCurve
+from .orders.rms_curve import RmsAccumulator, SpeedBin
 from .orders.steady import SteadySegment
 from .settings import JointSettings
 
@@ -78,7 +78,7 @@ class Evidence:
         return found.limited(self._contradiction)
 
     @property
-    def rms_curve(self) -> RmsCurve:
+    def rms_curve(self) -> tuple[SpeedBin, ...]:
         """RMS [m/s²] of the vibration against the wave generator's speed."""
         return self._rms.curve()
 

@@ -121,7 +121,7 @@ class JointResult:
             "joint": plan.joint,
             "verdict": verdict_entry(last),
             "lines": line_entries(last.identification),
-            "rms_curve": [{"rpm": rpm, "rms": rms, "samples": samples} for rpm, rms, samples in last.rms_curve.bins],
+            "rms_curve": [{"rpm": rpm, "rms": rms, "samples": samples} for rpm, rms, samples in last.rms_curve],
             "timeline": self.timeline,
             "relative": bool(last.identification.relative) if last.identification else None,
             "warn_limit": last.warn_limit,

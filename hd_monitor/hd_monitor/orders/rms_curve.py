@@ -1,7 +1,6 @@
 """RMS of the vibration against speed: the paper's property curve (Figs. 16 and 18)."""
 
 import math
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -16,19 +15,6 @@ class SpeedBin(NamedTuple):
     samples: int
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class RmsCurve:
-    """RMS per speed bin.
-
-    Attributes
-    ----------
-    bins : tuple of SpeedBin
-        Bins that have samples, by rising speed.
-    """
-
-    bins: tuple[SpeedBin, ...] = ()
-
-
 class RmsAccumulator:
     """Collects squares per bin of wave-generator speed; bins are centred on multiples of the width.
 
@@ -41,37 +27,30 @@ class RmsAccumulator:
     def __init__(self, width: float) -> None:
         self._width = width
         self._sums: dict[int, tuple[float, float, int]] = {}
-        self._bins: dict[int, SpeedBin] = {}
-        self._curve: RmsCurve | None = RmsCurve()
 
     def add(self, speed_rpm: npt.ArrayLike, values: npt.ArrayLike) -> None:
         """Add samples (NaN ones are left out): wave-generator speeds [rpm] and values, both of shape (N,)."""
         speed = np.abs(np.asarray(speed_rpm, dtype=np.float64))
         value = np.asarray(values, dtype=np.float64)
-        if not math.isfinite(float(speed.sum() + value.sum())):  # rarely so, and cheaper to ask
-            good = np.isfinite(speed) & np.isfinite(value)
-            speed, value = speed[good], value[good]
+        good = np.isfinite(speed) & np.isfinite(value)
+        speed, value = speed[good], value[good]
         if not speed.size:
             return
-        lowest, highest = (round(float(end) / self._width) for end in (speed.min(), speed.max()))
-        squares = value * value
-        if lowest == highest:
-            self._add_to_bin(lowest, float(speed.sum()), float(squares.sum()), speed.size)
-        else:
-            number = np.rint(speed / self._width).astype(np.int64) - lowest
-            count, speeds, powers = np.bincount(number), np.bincount(number, speed), np.bincount(number, squares)
-            for offset in np.flatnonzero(count).tolist():
-                self._add_to_bin(lowest + offset, float(speeds[offset]), float(powers[offset]), int(count[offset]))
-        self._curve = None
+        number = np.rint(speed / self._width).astype(np.int64)
+        lowest = int(number.min())
+        number -= lowest
+        count, speeds, powers = np.bincount(number), np.bincount(number, speed), np.bincount(number, value * value)
+        for offset in np.flatnonzero(count).tolist():
+            total, power, samples = self._sums.get(lowest + offset, (0.0, 0.0, 0))
+            self._sums[lowest + offset] = (
+                total + float(speeds[offset]),
+                power + float(powers[offset]),
+                samples + int(count[offset]),
+            )
 
-    def _add_to_bin(self, number: int, speeds: float, squares: float, samples: int) -> None:
-        old = self._sums.get(number, (0.0, 0.0, 0))
-        total, power, count = old[0] + speeds, old[1] + squares, old[2] + samples
-        self._sums[number] = total, power, count
-        self._bins[number] = SpeedBin(total / count, math.sqrt(power / count), count)
-
-    def curve(self) -> RmsCurve:
-        """Return the curve collected so far."""
-        if self._curve is None:
-            self._curve = RmsCurve(tuple(self._bins[number] for number in sorted(self._bins)))
-        return self._curve
+    def curve(self) -> tuple[SpeedBin, ...]:
+        """Return the bins that have samples, by rising speed."""
+        return tuple(
+            SpeedBin(total / samples, math.sqrt(power / samples), samples)
+            for _, (total, power, samples) in sorted(self._sums.items())
+        )

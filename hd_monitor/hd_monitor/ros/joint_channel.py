@@ -125,5 +125,5 @@ class JointChannel:
     def _publish_curves(self) -> None:
         if (zoom := self.watch.zoom()) is not None:
             self._zoom.publish(zoom_message(zoom))
-        if (curve := self.watch.present.rms_curve).bins:
+        if curve := self.watch.present.rms_curve:
             self._rms.publish(rms_message(curve))

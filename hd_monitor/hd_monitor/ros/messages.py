@@ -1,6 +1,7 @@
 """From the core's results to ROS messages."""
 
 import array
+from collections.abc import Sequence
 
 import numpy as np
 from builtin_interfaces.msg import Time
@@ -10,7 +11,7 @@ from std_msgs.msg import Float64MultiArray, MultiArrayDimension, MultiArrayLayou
 from ..arrays import FloatArray
 from ..contract import Dimension, rms_layout, zoom_layout
 from ..diagnosis.status import Status
-from ..orders.rms_curve import RmsCurve
+from ..orders.rms_curve import SpeedBin
 from ..orders.zoom import ZoomSpectrum
 
 LEVELS = (DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR)
@@ -41,9 +42,9 @@ def zoom_message(zoom: ZoomSpectrum) -> Float64MultiArray:
     return _multi_array(zoom_layout(len(table)), table)
 
 
-def rms_message(curve: RmsCurve) -> Float64MultiArray:
+def rms_message(curve: Sequence[SpeedBin]) -> Float64MultiArray:
     """Write an RMS curve as [speed bin, (rpm, RMS m/s², samples)]."""
-    table = np.asarray(curve.bins, dtype=np.float64).reshape(-1, 3)
+    table = np.asarray(curve, dtype=np.float64).reshape(-1, 3)
     return _multi_array(rms_layout(len(table)), table)
 
 

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from hd_monitor.diagnosis.status import Status
-from hd_monitor.orders.rms_curve import RmsCurve, SpeedBin
+from hd_monitor.orders.rms_curve import SpeedBin
 from hd_monitor.orders.zoom import zoom_spectrum
 from hd_monitor.reducer import LinePair
 
@@ -40,7 +40,7 @@ def test_a_spectrum_is_laid_out_bin_by_bin() -> None:
 def test_a_curve_is_laid_out_bin_by_bin() -> None:
     from hd_monitor.ros.messages import rms_message
 
-    message = rms_message(RmsCurve((SpeedBin(200.0, 0.5, 10), SpeedBin(300.0, 0.75, 20))))
+    message = rms_message((SpeedBin(200.0, 0.5, 10), SpeedBin(300.0, 0.75, 20)))
     assert list(message.data) == [200.0, 0.5, 10.0, 300.0, 0.75, 20.0]
     assert [(d.label, d.size, d.stride) for d in message.layout.dim] == [("speed_bin", 2, 6), ("rpm_rms_samples", 3, 3)]
 
@@ -48,4 +48,4 @@ def test_a_curve_is_laid_out_bin_by_bin() -> None:
 def test_an_empty_curve_is_an_empty_array() -> None:
     from hd_monitor.ros.messages import rms_message
 
-    assert not rms_message(RmsCurve()).data
+    assert not rms_message(()).data

@@ -128,7 +128,7 @@ def _waterfall(view: _View) -> Figure | None:
 
 
 def _rms(view: _View) -> Figure | None:
-    bins, speeds = view.last.rms_curve.bins, view.pair_speeds
+    bins, speeds = view.last.rms_curve, view.pair_speeds
     if len(bins) < FEWEST_SPEEDS:
         return None
     critical = [*speeds, (2.0 * speeds[0][0], "principal instability")]
