@@ -50,7 +50,9 @@ SOURCES = {f"input.source: {name}": source for name, source in INPUT_SOURCES.ite
 }
 
 
-@pytest.mark.parametrize("topic", {*(s.topic for s in SOURCES.values()), contract.ZOOM_SPECTRUM, contract.RMS_CURVE})
+@pytest.mark.parametrize(
+    "topic", sorted({*(s.topic for s in SOURCES.values()), contract.ZOOM_SPECTRUM, contract.RMS_CURVE})
+)
 def test_every_topic_has_a_section_with_an_example(topic: str) -> None:
     section = re.search(rf"^## {re.escape(topic)}\n(.*?)(?=^## |\Z)", TOPICS, re.MULTILINE | re.DOTALL)
     assert section is not None
