@@ -76,16 +76,7 @@ class Inputs:
 
     def _add_motion(self, messages: Sequence[bytes]) -> None:
         groups, faults = cdr.decode_joint_states(messages)
-        if len(groups) == 1 and not faults and (column := self._column(groups[0].names)) is not None:
-            group = groups[0]
-            self._joint_seen = True
-            self._sink.add_motion(
-                group.stamps, group.position[:, column], group.velocity[:, column], group.effort[:, column]
-            )
-            return
-        self._add_mixed_motion(groups, faults, len(messages))
-
-    def _add_mixed_motion(self, groups: list[cdr.JointStates], faults: list[Fault], total: int) -> None:
+        total = len(messages)
         columns = [self._column(group.names) for group in groups]
         mine = np.zeros(total, dtype=np.bool_)
         stamps = np.zeros(total, dtype=np.int64)
@@ -96,8 +87,8 @@ class Inputs:
                 stamps[group.place] = group.stamps
                 for row, array in zip(values, (group.position, group.velocity, group.effort), strict=True):
                     row[group.place] = array[:, column]
-        # Several publishers may share the topic, each with its own joints: the others' messages are no fault. They
-        # are as long as the joint has not been seen at all, since its name may be misspelt.
+        # Several publishers may share the topic, each with its own joints. Messages without the joint are a fault only
+        # until it is first seen, since its name may be misspelt.
         first = int(np.flatnonzero(mine)[0]) if mine.any() else total
         strangers = [
             Fault(place, self._absent(group.names))

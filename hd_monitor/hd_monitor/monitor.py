@@ -151,27 +151,23 @@ class Monitor:
             verdict = lost(losses, self._recorder.last_fault, self._presence.timeout)
         else:
             found = self._evidence.identification
-            verdict = self._judge.judge(found, "" if found is not None else self._missing(assembled))
+            missing = (
+                ""
+                if found is not None
+                else not_enough(
+                    assembled,
+                    self.settings,
+                    self._presence.absent,
+                    speed=self._evidence.speed(assembled),
+                    rate=self._recorder.rate,
+                    fault=self._recorder.last_fault,
+                )
+            )
+            verdict = self._judge.judge(found, missing)
             if found is not None and self._recorder.torque_source == "assumed":
                 verdict = with_assumed_torque(verdict, self.settings.load.torque)
         self._latest = self._pack(period.end, verdict, assembled)
         return self._latest
-
-    def _missing(self, assembled: AssembledPeriod) -> str:
-        """Say why there is no evidence yet."""
-        sensorless, rate = self.settings.sensorless, self._recorder.rate
-        speed = self._evidence.speed(assembled)
-        turning = speed >= self.settings.analysis.minimum_speed
-        too_fast = turning and self.settings.reducer.line_frequencies(speed).circular_spline > 0.5 * rate
-        return not_enough(
-            self._presence.absent,
-            fault=self._recorder.last_fault,
-            records=sensorless or bool(assembled.records),
-            usable=sensorless or Quantity.VIBRATION in assembled.usable,
-            turning=turning,
-            speed=speed,
-            rate=0.0 if sensorless or not too_fast else rate,
-        )
 
     def _pack(self, stamp: int, verdict: Verdict, assembled: AssembledPeriod | None) -> Assessment:
         evidence, limits = self._evidence, self.settings.diagnosis

@@ -4,7 +4,9 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 
 from ..acquisition.presence import Loss
+from ..acquisition.recorder import AssembledPeriod
 from ..contract import NANOSECONDS
+from ..settings import JointSettings
 from ..sources import Quantity
 from .verdict import Component, FaultCode, Level, Verdict
 
@@ -95,34 +97,25 @@ NO_SIMULATED_TIME = replace(
 
 
 def not_enough(
-    absent: Sequence[Quantity], *, fault: str, records: bool, usable: bool, turning: bool, speed: float, rate: float
+    period: AssembledPeriod,
+    settings: JointSettings,
+    absent: Sequence[Quantity],
+    *,
+    speed: float,
+    rate: float,
+    fault: str,
 ) -> str:
-    """Say why there is no evidence yet.
-
-    Parameters
-    ----------
-    absent : sequence of Quantity
-        Inputs that have not come so far.
-    fault : str
-        The newest complaint.
-    records, usable : bool
-        Whether the last period had vibration with known motion, and any usable sample of it.
-    turning : bool
-        Whether it had enough motion.
-    speed : float
-        Of the wave generator [rpm].
-    rate : float
-        Sampling rate [Hz] if all lines lie above half of it at that speed; else 0.
-    """
+    """Say why there is no evidence yet, by the last period, its wave-generator speed [rpm] and sampling rate [Hz]."""
     if absent:
         return f"No {_listed(absent)} so far"
-    if not records:
-        return "No vibration with known motion in the last period" + (f": {fault}" if fault else "")
-    if not usable:
+    if not settings.sensorless and not period.records:
+        known = "motion and torque" if Quantity.TORQUE in settings.sources else "motion"
+        return f"No vibration with known {known} in the last period" + (f": {fault}" if fault else "")
+    if not settings.sensorless and Quantity.VIBRATION not in period.usable:
         return f"No usable vibration sample in the last period: {fault}"
-    if not turning:
+    if not speed >= settings.analysis.minimum_speed:
         return "The joint has not turned enough yet: the lines show in motion only"
-    if rate:
+    if not settings.sensorless and settings.reducer.line_frequencies(speed).circular_spline > 0.5 * rate:
         return (
             f"At {speed:.0f} rpm all lines lie above half the sampling rate of {rate:.0f} Hz: check that positions "
             "are in rad on the output side, or sample faster"

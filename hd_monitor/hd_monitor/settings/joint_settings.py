@@ -15,22 +15,7 @@ from .table import PARAMETERS
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JointSettings:
-    """All settings of one joint, by group.
-
-    Attributes
-    ----------
-    values : tuple of (str, value)
-        Every parameter by its dotted name, as checked.
-    reducer : Reducer
-    serial : str
-        The parameter ``reducer.serial``.
-    dynamics : Dynamics
-    refine_dynamics : bool
-        The parameter ``dynamics.refine``.
-    input : InputSettings
-    load : LoadSettings
-    analysis : AnalysisSettings
-    diagnosis : DiagnosisSettings
+    """All settings of one joint, by group; `values` are all parameters by their dotted names, as checked.
 
     Examples
     --------
