@@ -53,10 +53,9 @@ class Source:
     type : str
         ROS message type, as ``package/Type``.
     decode : callable or None
-        Turns serialised messages into what they say, in their order; None for joint states, of which the joint has to
-        be found first.
-    needs : tuple of str
-        Parameters that must be above 0, each with what it is for.
+        Decodes serialised messages, in their order; None for joint states, where the joint has to be found first.
+    needs : tuple of (str, str)
+        Parameters that must not be 0, each with the reason.
     gravity : bool
         Whether the signal also holds gravity and the arm's own motion.
     """
@@ -75,7 +74,7 @@ class Source:
 
 
 def _decode_blocks(messages: Sequence[bytes], settings: "JointSettings") -> Iterator[Decoded]:
-    """Yield the blocks, and what is wrong with those that are none, in the order of the messages."""
+    """Yield the blocks, and what is wrong with the others, in the order of the messages."""
     groups, faults = cdr.decode_multi_arrays(messages)
     items: list[tuple[int, contract.Block | str]] = list(faults)
     for group in groups:

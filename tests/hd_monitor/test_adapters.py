@@ -97,7 +97,7 @@ def test_an_unnamed_joint_takes_the_only_one() -> None:
     assert sink.rejected == []
 
 
-def test_an_unnamed_joint_among_several_is_asked_for() -> None:
+def test_an_unnamed_joint_among_several_is_rejected() -> None:
     feed, sink = inputs()
     feed.add(Quantity.MOTION, [joint_state(1, elbow=0.5, wrist=0.6)])
     assert sink.motion == []
@@ -111,7 +111,7 @@ def test_a_named_joint_is_taken_from_among_several_whatever_their_order() -> Non
     assert [row[:2] for row in sink.motion] == [(1, 0.6), (2, 0.7)]
 
 
-def test_input_joint_name_goes_before_the_joints_own_name() -> None:
+def test_input_joint_name_overrides_the_joints_own_name() -> None:
     feed, sink = inputs("wrist", input__joint_name="arm_wrist")
     feed.add(Quantity.MOTION, [joint_state(1, wrist=0.5, arm_wrist=0.6)])
     assert sink.motion[0][:2] == (1, 0.6)
@@ -124,7 +124,7 @@ def test_a_misspelt_joint_is_reported_with_the_names_there_are() -> None:
     assert "'elbwo' is not in joint_states, which carries elbow" in sink.rejected[0]
 
 
-def test_messages_of_other_publishers_are_no_fault_once_the_joint_is_seen() -> None:
+def test_messages_of_other_publishers_are_accepted_once_the_joint_is_seen() -> None:
     messages = [joint_state(1, gripper=9.0), joint_state(2, elbow=0.5), joint_state(3, gripper=9.0)]
     for batches in ([messages], [[m] for m in messages], [messages[:2], messages[2:]]):
         feed, sink = inputs("elbow")

@@ -80,7 +80,7 @@ def test_lost_repeated_and_swapped_blocks_are_counted_and_survived(recording: Re
     assert assessment.verdict.component is Component.FLEXSPLINE
 
 
-def test_a_publisher_that_numbers_no_blocks_loses_none(recording: Recording) -> None:
+def test_blocks_without_numbers_are_all_used(recording: Recording) -> None:
     blocks = [block._replace(sequence=0) for block in recording.blocks()]
     assert latest(run(recording, blocks)).quality == latest(run(recording)).quality
 

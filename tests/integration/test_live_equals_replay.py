@@ -125,7 +125,7 @@ def test_every_live_status_is_replayed_value_by_value(
     bench.until(lambda: any(s.fault_code == "HD_INPUT_LOST" for s in bench.statuses[seen:]), "the end of the data")
     recorder.drain()
 
-    # What the node says by its own clock, before data came and after it ended, is no verdict on data.
+    # What the node says by its own clock, before data came and after it ended, is not a verdict on data.
     live = [
         (status.level, status.message, status.hardware_id, status.values)
         for status in bench.statuses

@@ -162,7 +162,7 @@ class Judge:
         )
 
     def _contradicted(self, component: Component, odds: Probabilities) -> bool:
-        """Whether a part that should not be named alone could be the one after all, beyond the confidence asked for."""
+        """Whether a part that should not be named alone could be the one after all, beyond the required confidence."""
         opposite = {
             Component.CIRCULAR_SPLINE: odds.flexspline,
             Component.FLEXSPLINE: odds.circular_spline,

@@ -99,7 +99,7 @@ class JointWatch:
     def check(self, now: int, explain: Explain) -> None:
         """Look for inputs that are silent or useless; to be called once a second.
 
-        A time `now` of 0 says that a simulated clock is asked for but has not begun.
+        A time `now` of 0 says that a simulated clock is used but has not begun.
         """
         if self._assessed:
             self._assessed = False

@@ -1,4 +1,4 @@
-"""The parameters of a node taken apart: those of each joint, of the node itself, and of others that share the file."""
+"""A node's parameters, split into those of each joint, of the node itself, and of other nodes that share the file."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any

@@ -24,7 +24,7 @@ PARAMETERS: tuple[Parameter, ...] = (
     Parameter(
         name="dynamics.refine",
         default=True,
-        description="refine natural frequency and damping on line where the speed varies enough to tell them",
+        description="refine natural frequency and damping on line where the speed varies enough to determine them",
     ),
     Parameter(
         name="input.source",

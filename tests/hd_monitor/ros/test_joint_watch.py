@@ -106,7 +106,7 @@ def test_a_simulated_clock_that_has_not_begun_is_named() -> None:
     watch = JointWatch("elbow", JointSettings.from_mapping(), 0)
     watch.check(0, explain)
     assert "/clock" in watch.status().message
-    watch.check(1000 * SECOND, explain)  # its first time is no thousand seconds of silence
+    watch.check(1000 * SECOND, explain)  # its first time is not a thousand seconds of silence
     assert watch.status().value("fault_code") == "HD_UNDETERMINED"
 
 

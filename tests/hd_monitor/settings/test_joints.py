@@ -1,4 +1,4 @@
-"""A node's parameters taken apart: several joints in one file, the node's own, and those of others."""
+"""A node's parameters, split: several joints in one file, the node's own, and those of others."""
 
 import pytest
 
