@@ -93,6 +93,9 @@ SENTENCES: Mapping[LimitationCode, str] = {
     LimitationCode.UNCERTAINTY_WIDENED: (
         "the model explains the lines only in part, so the uncertainties are widened {factor:.1f} times"
     ),
+    LimitationCode.OTHER_PART: (
+        "a torque of {torque_nm:.3g} ± {std_nm:.1g} N·m at {order:g} cycles per output revolution points to the {part}"
+    ),
     LimitationCode.NEAR_RESONANCE: (
         "At this speed the lines are so near the natural frequency ({given_hz:g} Hz given) that a small error in it "
         "would change the name: let the joint turn at other speeds too"

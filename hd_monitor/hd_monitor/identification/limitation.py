@@ -36,6 +36,7 @@ class LimitationCode(StrEnum):
     LINES_UNEXPLAINED = "lines_unexplained"
     UNCERTAINTY_WIDENED = "uncertainty_widened"
     NEAR_RESONANCE = "near_resonance"
+    OTHER_PART = "other_part"
     # What joint states alone do not show
     SIGNAL_MISSING = "signal_missing"
     SIGNAL_CONSTANT = "signal_constant"

@@ -7,6 +7,7 @@ import pytest
 from tests.simulated.cases import Case, simulate
 
 from hd_monitor.diagnosis.limitations import describe_limitation
+from hd_monitor.identification.fit import unknowns
 from hd_monitor.identification.identifier import Identifier
 from hd_monitor.identification.limitation import LimitationCode
 from hd_monitor.model import Dynamics, ParametricModel, StiffnessSeries, Torque, line_pairs
@@ -120,6 +121,30 @@ def test_without_torque_the_ratio_is_right_and_said_to_be_relative():
     assert result.relative
     ratio = result.index.circular_spline / result.index.flexspline
     assert ratio == pytest.approx(truth.index.circular_spline / truth.index.flexspline, rel=0.05)
+
+
+def test_another_part_is_a_row_in_the_table_of_torque_lines(monkeypatch):
+    """Motor ripple three times per motor revolution, with a row of its own: fitted, and named."""
+    truth = case(speed=600.0, model=replace(MODEL, torque=Torque(mean=10.0)))
+    records = simulate(truth)
+    order, ripple = 240, 0.4  # cycles per output revolution; N·m
+    fast = [replace(r, acceleration=r.acceleration + shaken(r, order, ripple)) for r in records]
+    monkeypatch.setitem(unknowns.TORQUE_LINES, order, "motor")
+    found = identify(fast, truth.settings())
+    assert_right(found, truth)
+    (said,) = [doubt for doubt in found.doubts if doubt.code is LimitationCode.OTHER_PART]
+    assert said.values["order"] == order
+    assert said.values["torque_nm"] == pytest.approx(ripple, rel=0.2)
+    assert "points to the motor" in describe_limitation(said)
+    sound = identify(records, truth.settings())
+    assert LimitationCode.OTHER_PART not in [doubt.code for doubt in sound.doubts]
+
+
+def shaken(record, order, torque):
+    """Steady vibration [rad/s²] that a torque at an order makes of the mean oscillator."""
+    omega = order * float(record.speed[0])
+    twist = complex(MODEL.dynamics.receptance(omega / (2.0 * np.pi))) * torque / MODEL.dynamics.stiffness
+    return (-(omega**2) * twist * np.exp(1j * order * record.angle)).real
 
 
 def test_line_amplitudes_are_those_of_the_steady_state():

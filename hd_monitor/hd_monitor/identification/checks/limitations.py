@@ -12,7 +12,7 @@ from ..fit.gauss_newton import Fit
 from ..fit.indexes import Indexes
 from ..fit.linearisation import Predictor
 from ..fit.score_test import ScoreTest
-from ..fit.unknowns import Unknowns
+from ..fit.unknowns import TORQUE_LINES, Unknowns
 from ..limitation import Limitation, LimitationCode, blocker, doubt
 from .coverage import Coverage
 
@@ -98,7 +98,7 @@ def limitations_of(fit: FitSummary, reducer: Reducer, warn_index: float) -> tupl
     warn_index : float
         ``diagnosis.warn_index``, the smallest index that matters.
     """
-    found = list(_contradictions(fit))
+    found = [*_contradictions(fit), *_other_parts(fit)]
     if fit.inflation > _WIDENED:
         if fit.unexplained > _UNEXPLAINED:
             found.append(blocker(LimitationCode.LINES_UNEXPLAINED, unexplained_percent=100.0 * fit.unexplained))
@@ -181,6 +181,18 @@ def _contradictions(fit: FitSummary) -> Iterator[Limitation]:
     test = tests[u.torque]
     if not fit.relative and test.significance > CONTRADICTION and abs(test.value) > _CORRECTED_TORQUE:
         yield blocker(LimitationCode.TORQUE_TOO_SMALL if test.value > 0.0 else LimitationCode.TORQUE_TOO_LARGE)
+
+
+def _other_parts(fit: FitSummary) -> Iterator[Limitation]:
+    """Yield the parts besides the splines whose lines stand out."""
+    u, unit = fit.unknowns, fit.predictor.reference_torque
+    for order in u.load_orders:
+        if part := TORQUE_LINES.get(order):
+            place = u.load_line(order)
+            size = float(np.linalg.norm(fit.values[place]))
+            std = math.sqrt(fit.inflation * float(np.mean(fit.fit.covariance[place, place])))
+            if size > CONTRADICTION * std:
+                yield doubt(LimitationCode.OTHER_PART, part=part, order=order, torque_nm=unit * size, std_nm=unit * std)
 
 
 def _is_fragile(fit: FitSummary, warn_index: float) -> bool:

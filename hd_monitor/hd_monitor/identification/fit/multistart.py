@@ -44,7 +44,7 @@ def load_starts(unknowns: Unknowns, values: FloatArray, *, thorough: bool) -> li
     starts = [values]
     for load in (0.0, *(START_LOADS if thorough else START_LOADS[::2])):
         start = values * ~unknowns.mask(unknowns.stiffness, unknowns.load)
-        start[unknowns.load] = [0.0, load.real, 0.0, load.imag]
+        start[unknowns.load_line(2)] = load.real, load.imag
         starts.append(start)
     return starts
 

@@ -1,6 +1,7 @@
 """The unknowns of the estimation, and their places in one vector."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -8,6 +9,13 @@ import numpy as np
 from ...arrays import BoolArray, ComplexArray, FloatArray
 from ...model.parameters import Dynamics
 from ..segment.segment import FREQUENCY_MARGIN
+
+TORQUE_LINES: Mapping[int, str] = {1: "", 2: ""}
+"""Orders [cycles per output revolution] of unknown torques that are fitted along, and the part that each accuses.
+
+The first two are the load's (gravity, and the fluctuation that mimics the other spline) and accuse nothing. A row that
+names a part is said to stand out as soon as the data bear it.
+"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -80,6 +88,11 @@ class Unknowns:
     def size(self) -> int:
         """Number of unknowns."""
         return self.frequency + 5
+
+    def load_line(self, order: int) -> list[int]:
+        """Places of the real and the imaginary part of the load phasor at an order."""
+        place = self.load.start + self.load_orders.index(order)
+        return [place, place + len(self.load_orders)]
 
     def zero(self) -> FloatArray:
         """Return the vector of a healthy reducer with all that is given taken as right."""

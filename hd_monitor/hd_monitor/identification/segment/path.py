@@ -89,9 +89,9 @@ def paths_along(
             lines[:, 2 * spline, k] = power.real
             np.negative(power.imag, out=lines[:, 2 * spline + 1, k])
     loads = np.empty((q.size, 2 * len(load_orders)))
-    turns = powers(turn, max(load_orders, default=0))
     for place, load_order in enumerate(load_orders):
-        loads[:, place], loads[:, place + len(load_orders)] = turns[load_order].real, -turns[load_order].imag
+        load = np.exp(1j * load_order * q)
+        loads[:, place], loads[:, place + len(load_orders)] = load.real, -load.imag
     torque, speed, acceleration = (
         _at_points(parts, values, values[:-1], np.diff(values))
         for values in (motion.torque, motion.speed, motion.acceleration)

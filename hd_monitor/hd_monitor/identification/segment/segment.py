@@ -226,6 +226,7 @@ class SegmentBuilder:
         lowest, highest = self.reducer.output_orders
         groups = range(1, 2 * self.harmonics + 3)  # the coupling of the splines makes lines beyond the harmonics, too
         own = [(k * lowest * low, k * highest * high) for k in groups]
+        own += [(order * low, order * high) for order in self.load_orders]
         return np.asarray(own), _SIDE_ORDERS * high
 
 

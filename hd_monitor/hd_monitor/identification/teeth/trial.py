@@ -106,7 +106,7 @@ class ToothTrial:
         for load in self.load_starts:
             start = u.zero()
             start[u.torque] = self.values[u.torque]
-            start[u.load] = [0.0, load.real, 0.0, load.imag]
+            start[u.load_line(2)] = load.real, load.imag
             starts.append(start)
         return starts
 

@@ -12,13 +12,10 @@ from ..fit.information import Information
 from ..fit.linearisation import Predictor
 from ..fit.multistart import signal_level
 from ..fit.noise import NoiseFloor
-from ..fit.unknowns import Unknowns
+from ..fit.unknowns import TORQUE_LINES, Unknowns
 from ..segment.preparation import Preparation
 from ..segment.segment import Segment
 from .state import State
-
-LOAD_ORDERS = (1, 2)
-"""Cycles per output revolution of unknown load fluctuations: gravity, and the one that mimics the other spline."""
 
 
 class Unexplained(NamedTuple):
@@ -49,7 +46,7 @@ class Context:
     @classmethod
     def of(cls, settings: JointSettings) -> "Context":
         """Return the context that a joint's settings make."""
-        unknowns = Unknowns(harmonics=settings.analysis.harmonics, load_orders=LOAD_ORDERS)
+        unknowns = Unknowns(harmonics=settings.analysis.harmonics, load_orders=tuple(TORQUE_LINES))
         prior = Information.gaussian(unknowns.given_std())
         return cls(
             settings=settings,
