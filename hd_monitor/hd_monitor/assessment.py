@@ -6,11 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from .acquisition.quality import Quality
-from .acquisition.record import JointSamples, Record
+from .acquisition.record import JointSamples, Record, join_records
 from .diagnosis.verdict import Verdict
 from .identification.result import Identification
 from .orders.rms_curve import SpeedBin
-from .orders.steady import join
 from .orders.zoom import ZoomSpectrum, zoom_spectrum
 from .reducer import Reducer
 
@@ -74,7 +73,7 @@ class Assessment:
     @property
     def steady(self) -> Record | None:
         """The newest stretch at an almost constant speed; None while the joint does not turn steadily."""
-        return join(self.steady_parts)
+        return join_records(self.steady_parts) if self.steady_parts else None
 
     @property
     def strongest_pair(self) -> int:

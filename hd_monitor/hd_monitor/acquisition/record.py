@@ -1,5 +1,6 @@
 """Input of the analyses: contiguous stretches of vibration with their motion, and joint states."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -45,6 +46,29 @@ class Record:
     def times(self) -> FloatArray:
         """Times of the samples [s], relative to the monitor's epoch."""
         return np.asarray(self.start + self.period * np.arange(len(self)), dtype=np.float64)
+
+
+def join_records(records: Sequence[Record]) -> Record:
+    """Join records, one or more, each of which continues the one before it.
+
+    Their common period follows from their starts: each record has its own estimate of it.
+    """
+    first, last = records[0], records[-1]
+    if len(records) == 1:
+        return first
+    acceleration, angle, speed, torque = (
+        np.concatenate([getattr(record, name) for record in records])
+        for name in ("acceleration", "angle", "speed", "torque")
+    )
+    return Record(
+        start=first.start,
+        period=(last.start - first.start) / sum(len(record) for record in records[:-1]),
+        acceleration=acceleration,
+        angle=angle,
+        speed=speed,
+        torque=torque,
+        continues=first.continues,
+    )
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)

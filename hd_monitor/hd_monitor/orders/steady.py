@@ -2,9 +2,6 @@
 
 import math
 from collections import deque
-from collections.abc import Sequence
-
-import numpy as np
 
 from ..acquisition.record import Record
 from ..reducer import Reducer
@@ -54,21 +51,6 @@ class SteadySegment:
     def parts(self) -> tuple[Record, ...]:
         """Return the records of the segment, none while the speed is not steady."""
         return tuple(self._parts)
-
-
-def join(parts: Sequence[Record]) -> Record | None:
-    """Join records that follow each other into one; None if there are none."""
-    if len(parts) < 2:
-        return parts[0] if parts else None
-    return Record(
-        start=parts[0].start,
-        period=float(np.mean([part.period for part in parts])),
-        acceleration=np.concatenate([part.acceleration for part in parts]),
-        angle=np.concatenate([part.angle for part in parts]),
-        speed=np.concatenate([part.speed for part in parts]),
-        torque=np.concatenate([part.torque for part in parts]),
-        continues=parts[0].continues,
-    )
 
 
 def _near(first: float, last: float, reference: float) -> bool:

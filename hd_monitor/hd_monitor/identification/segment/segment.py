@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy import fft
 
-from ...acquisition.record import Record
+from ...acquisition.record import Record, join_records
 from ...arrays import BoolArray, FloatArray
 from ...errors import ParameterError
 from ...orders.orthonormal import orthonormal
@@ -161,16 +161,13 @@ class SegmentBuilder:
         ParameterError
             If the sampling rate is far too low for the lines and the natural frequency.
         """
-        period = _common_period(records)
-        angle, speed, measured, raw = (
-            np.concatenate([getattr(record, name) for record in records])
-            for name in ("angle", "speed", "torque", "acceleration")
-        )
-        top_speed = float(np.abs(speed).max())
+        record = join_records(records)
+        raw, period = record.acceleration, record.period
+        top_speed = float(np.abs(record.speed).max())
         line = (self.harmonics * self.reducer.output_orders.flexspline + _SIDE_ORDERS) * top_speed / math.tau
         signal = decimate(raw, period, line, FREQUENCY_MARGIN * self.natural_frequency)
         places = signal.first + signal.factor * np.arange(signal.values.size)
-        angle, speed, measured = angle[places], speed[places], measured[places]
+        angle, speed, measured = record.angle[places], record.speed[places], record.torque[places]
         step = period * signal.factor
         steps = self._substeps(line, step)
         if steps > MOST_SUBSTEPS:
@@ -185,7 +182,7 @@ class SegmentBuilder:
         motion = Motion(angle, speed, own, known, step)
         at_steps, at_gauss = paths_along(motion, self.reducer, self.harmonics, self.load_orders, steps)
         return Segment(
-            start=records[0].start + signal.first * period,
+            start=record.start + signal.first * period,
             period=step,
             acceleration=signal.values,
             used=signal.used,
@@ -233,11 +230,3 @@ class SegmentBuilder:
 def _slow_degree(duration: float) -> int:
     """Degree of the polynomial that removes what is slower than about 1 Hz over a duration [s]."""
     return 3 + math.ceil(2.0 * duration)
-
-
-def _common_period(records: Sequence[Record]) -> float:
-    """Mean sample period of successive records, each of which has its own estimate of it."""
-    first, last = records[0], records[-1]
-    if len(records) == 1:
-        return first.period
-    return (last.start - first.start) / sum(len(record) for record in records[:-1])
