@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from typing import TYPE_CHECKING, Any
 
 from .errors import ParameterError
@@ -73,21 +73,44 @@ class Parameter:
             )
 
 
-def number(
-    name: str, default: float | tuple[float, ...], unit: str, low: float, high: float, description: str
-) -> Parameter:
-    """Make a parameter that is a number or a list of numbers, whole if `default` is, from `low` to `high`."""
-    return Parameter(name=name, default=default, unit=unit, low=low, high=high, description=description)
+def number[T: (int, float, tuple[float, ...])](default: T, unit: str, low: float, high: float, description: str) -> T:
+    """Declare a number or a list of numbers, whole if `default` is, from `low` to `high`: a field of a dataclass."""
+    return _declare(default, unit=unit, low=low, high=high, description=description)
 
 
-def choice(name: str, default: str, choices: Iterable[str], description: str) -> Parameter:
-    """Make a parameter that is one word of several."""
-    return Parameter(name=name, default=default, choices=tuple(choices), description=description)
+def choice(default: str, choices: Iterable[str], description: str) -> str:
+    """Declare one word of several."""
+    return _declare(default, choices=tuple(map(str, choices)), description=description)
 
 
-def switch(name: str, default: bool, description: str) -> Parameter:
-    """Make a parameter that is true or false."""
-    return Parameter(name=name, default=default, description=description)
+def plain[T: (bool, str)](default: T, description: str) -> T:
+    """Declare what is true or false, or any text."""
+    return _declare(default, description=description)
+
+
+def _declare[T](default: T, **declaration: Any) -> T:
+    return field(default=default, metadata=declaration)
+
+
+def table(prefix: str = "", **declared: Any) -> tuple[Parameter, ...]:
+    """List parameters declared one by one: ``table("belt.", speed=number(2.5, "m/s", 0.0, 10.0, "of the belt"))``."""
+    return tuple(
+        Parameter(name=prefix + name, default=item.default, **item.metadata) for name, item in declared.items()
+    )
+
+
+def parameters_of(group: "type[DataclassInstance]", prefix: str = "") -> tuple[Parameter, ...]:
+    """List the parameters that the fields of a dataclass declare, in their order.
+
+    Examples
+    --------
+    >>> @dataclass(frozen=True, kw_only=True)
+    ... class Belt:
+    ...     speed: float = number(2.5, "m/s", 0.0, 10.0, "of the belt")
+    >>> parameters_of(Belt, "belt.")[0].check(3)
+    3.0
+    """
+    return table(prefix, **{item.name: item for item in fields(group)})
 
 
 def check_all(parameters: Sequence[Parameter], given: Mapping[str, Any], *, owner: str) -> dict[str, Value]:

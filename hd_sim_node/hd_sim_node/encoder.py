@@ -7,58 +7,33 @@ from typing import NamedTuple
 import numpy as np
 
 from hd_monitor.arrays import FloatArray, IntArray
+from hd_monitor.parameter import choice, number, plain
 
 from .randomness import generator
 from .rig import Rig, RigChunk
 from .sensor import nanoseconds
 
-EFFORTS = ("transmitted", "mean", "reaction", "none")
-SIDES = ("motor", "output")
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JointSettings:
-    """What the joint reports.
+    """What the joint reports: the parameters ``joint_states.*``."""
 
-    Parameters
-    ----------
-    name : str
-        The joint's name in the messages.
-    rate : float
-        Messages per second [Hz].
-    loss : float
-        Fraction of the messages that is lost.
-    side : str
-        ``motor``: the motor's encoder divided by the reduction; ``output``: an encoder behind the reducer, which sees
-        the torsional vibration.
-    reversed : bool
-        Whether the joint counts against the wave generator's sense of rotation.
-    resolution : float
-        Step of the position [rad]; 0: continuous.
-    velocity : bool
-        Whether velocities are reported.
-    velocity_noise : float
-        Standard deviation [rad/s].
-    effort : str
-        ``transmitted``: the torque on the output without the drive's ripple; ``mean``: its mean parameter;
-        ``reaction``: what the reducer transmits, vibration included; ``none``.
-    effort_noise : float
-        Standard deviation [N·m].
-    jitter : float
-        Standard deviation of the stamps [s].
-    """
-
-    name: str = "joint"
-    rate: float = 100.0
-    loss: float = 0.0
-    side: str = "motor"
-    reversed: bool = False
-    resolution: float = 0.0
-    velocity: bool = True
-    velocity_noise: float = 0.0
-    effort: str = "transmitted"
-    effort_noise: float = 0.0
-    jitter: float = 0.0
+    name: str = plain("joint", "the joint's name in joint_states")
+    rate: float = number(100.0, "Hz", 0.1, 10_000.0, "joint states per second")
+    side: str = choice("motor", ("motor", "output"), "where the encoder sits; output: it sees the torsional vibration")
+    reversed: bool = plain(False, "count against the wave generator's sense")
+    resolution: float = number(0.0, "rad", 0.0, 10.0, "step of the position; 0: continuous")
+    velocity: bool = plain(True, "report velocities")
+    velocity_noise: float = number(0.0, "rad/s", 0.0, 1e6, "standard deviation of the velocity's noise")
+    effort: str = choice(
+        "transmitted",
+        ("transmitted", "mean", "reaction", "none"),
+        "transmitted: the output's torque without the drive's ripple; mean: torque.mean; reaction: what "
+        "the reducer transmits, vibration included; none: no effort",
+    )
+    effort_noise: float = number(0.0, "N·m", 0.0, 1e6, "standard deviation of the effort's noise")
+    jitter: float = number(0.0, "s", 0.0, 10.0, "standard deviation of the stamps")
+    loss: float = number(0.0, "", 0.0, 1.0, "joint states lost, as a fraction")
 
 
 class JointBatch(NamedTuple):

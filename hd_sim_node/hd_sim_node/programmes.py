@@ -10,7 +10,7 @@ from itertools import pairwise
 from typing import Any
 
 from hd_monitor.errors import ParameterError
-from hd_monitor.parameter import Parameter, number
+from hd_monitor.parameter import Parameter, number, table
 from hd_monitor.reducer import Reducer
 
 from .programme import NO_RIPPLE, Ripple, SpeedProgramme
@@ -19,12 +19,12 @@ Corners = tuple[list[float], list[float]]
 """Times [s] and wave-generator speeds [rpm]."""
 
 
-def _speed(name: str, default: float | tuple[float, ...], description: str) -> Parameter:
-    return number(name, default, "rpm", -20_000.0, 20_000.0, f"wave generator: {description}")
+def _speed[T: (float, tuple[float, ...])](default: T, description: str) -> T:
+    return number(default, "rpm", -20_000.0, 20_000.0, f"wave generator: {description}")
 
 
-def _rate(name: str, default: float, description: str) -> Parameter:
-    return number(name, default, "rpm/s", 1e-3, 1e6, f"wave generator: {description}")
+def _rate(default: float, description: str) -> float:
+    return number(default, "rpm/s", 1e-3, 1e6, f"wave generator: {description}")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -133,47 +133,52 @@ def _profile(values: Mapping[str, Any], reducer: Reducer, closed: bool) -> Corne
 PROGRAMMES: dict[str, ProgrammeKind] = {
     "dwell": ProgrammeKind(
         summary="holds one speed after the other, with ramps between",
-        parameters=(
-            _speed("dwell.first", 200.0, "first speed held"),
-            _speed("dwell.last", 3000.0, "last speed held"),
-            number("dwell.step", 100.0, "rpm", 0.1, 20_000.0, "step between the speeds"),
-            number("dwell.time", 5.0, "s", 0.01, 86_400.0, "time at each speed"),
-            _rate("dwell.ramp_rate", 500.0, "change of speed between dwells"),
+        parameters=table(
+            "dwell.",
+            first=_speed(200.0, "first speed held"),
+            last=_speed(3000.0, "last speed held"),
+            step=number(100.0, "rpm", 0.1, 20_000.0, "step between the speeds"),
+            time=number(5.0, "s", 0.01, 86_400.0, "time at each speed"),
+            ramp_rate=_rate(500.0, "change of speed between dwells"),
         ),
         corners=_dwell,
     ),
     "fixed": ProgrammeKind(
         summary="holds one speed",
-        parameters=(
-            _speed("fixed.speed", 850.0, "speed"),
-            number("fixed.time", 60.0, "s", 0.01, 1e7, "length of one cycle"),
+        parameters=table(
+            "fixed.",
+            speed=_speed(850.0, "speed"),
+            time=number(60.0, "s", 0.01, 1e7, "length of one cycle"),
         ),
         corners=_fixed,
     ),
     "sweep": ProgrammeKind(
         summary="passes from one speed to another at a steady rate, and back if it repeats",
-        parameters=(
-            _speed("sweep.first", 200.0, "speed at the start"),
-            _speed("sweep.last", 3000.0, "speed at the end"),
-            _rate("sweep.rate", 50.0, "change of speed"),
+        parameters=table(
+            "sweep.",
+            first=_speed(200.0, "speed at the start"),
+            last=_speed(3000.0, "speed at the end"),
+            rate=_rate(50.0, "change of speed"),
         ),
         corners=_sweep,
     ),
     "strokes": ProgrammeKind(
         summary="moves back and forth over an arc of the output, as a robot's joint does",
-        parameters=(
-            number("strokes.angle", 120.0, "deg", 0.01, 1e5, "arc of the output"),
-            number("strokes.speed", 1500.0, "rpm", 1.0, 20_000.0, "wave generator: largest speed, arc permitting"),
-            _rate("strokes.acceleration", 3000.0, "acceleration and braking"),
-            number("strokes.pause", 0.2, "s", 0.0, 3600.0, "standstill at each end"),
+        parameters=table(
+            "strokes.",
+            angle=number(120.0, "deg", 0.01, 1e5, "arc of the output"),
+            speed=number(1500.0, "rpm", 1.0, 20_000.0, "wave generator: largest speed, arc permitting"),
+            acceleration=_rate(3000.0, "acceleration and braking"),
+            pause=number(0.2, "s", 0.0, 3600.0, "standstill at each end"),
         ),
         corners=_strokes,
     ),
     "profile": ProgrammeKind(
         summary="follows corners given one by one",
-        parameters=(
-            number("profile.times", (0.0, 60.0), "s", 0.0, math.inf, "times of the corners, from 0"),
-            _speed("profile.speeds", (850.0, 850.0), "speeds at the corners"),
+        parameters=table(
+            "profile.",
+            times=number((0.0, 60.0), "s", 0.0, math.inf, "times of the corners, from 0"),
+            speeds=_speed((850.0, 850.0), "speeds at the corners"),
         ),
         corners=_profile,
     ),

@@ -6,6 +6,7 @@ import numpy as np
 
 from hd_monitor.arrays import FloatArray, IntArray
 from hd_monitor.contract import NANOSECONDS
+from hd_monitor.parameter import number
 
 from .randomness import generator
 from .rig import RigChunk
@@ -13,39 +14,17 @@ from .rig import RigChunk
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SensorSettings:
-    """What the accelerometer does to the signal.
+    """What the accelerometer does to the signal: the parameters ``sensor.*`` that may be changed while it runs."""
 
-    Parameters
-    ----------
-    noise : float
-        Standard deviation of white noise [rad/s²].
-    offset : float
-        Constant added [rad/s²].
-    spike_rate : float
-        Spikes per second on average.
-    spike_size : float
-        Standard deviation of the spikes [rad/s²].
-    full_scale : float
-        Largest value put out [rad/s²]; 0: no limit.
-    resolution : float
-        Step of the values put out [rad/s²]; 0: continuous.
-    stuck_after : float
-        Time [s] after which the last value is repeated forever; 0: never.
-    jitter : float
-        Standard deviation of the stamps [s].
-    delay : float
-        Delay of the stamps [s].
-    """
-
-    noise: float = 0.0
-    offset: float = 0.0
-    spike_rate: float = 0.0
-    spike_size: float = 0.0
-    full_scale: float = 0.0
-    resolution: float = 0.0
-    stuck_after: float = 0.0
-    jitter: float = 0.0
-    delay: float = 0.0
+    noise: float = number(0.1, "rad/s²", 0.0, 1e9, "standard deviation of white noise")
+    offset: float = number(0.0, "rad/s²", -1e9, 1e9, "constant added to the signal")
+    spike_rate: float = number(0.0, "1/s", 0.0, 1e5, "spikes per second")
+    spike_size: float = number(100.0, "rad/s²", 0.0, 1e9, "standard deviation of the spikes")
+    full_scale: float = number(0.0, "rad/s²", 0.0, 1e9, "value at which the sensor clips; 0: none")
+    resolution: float = number(0.0, "rad/s²", 0.0, 1e9, "step of the sensor's values; 0: continuous")
+    stuck_after: float = number(0.0, "s", 0.0, 1e7, "time after which the sensor repeats its last value; 0: never")
+    jitter: float = number(0.0, "s", 0.0, 10.0, "standard deviation of the stamps")
+    delay: float = number(0.0, "s", -10.0, 10.0, "what the stamps are late by")
 
 
 class Accelerometer:

@@ -15,7 +15,7 @@ from hd_monitor.settings import PARAMETERS as MONITOR_PARAMETERS
 
 from .defects import CUSTOM, stiffness_of
 from .encoder import JointSettings
-from .parameters import PARAMETERS
+from .parameters import PARAMETERS, GeneralSettings, MountingSettings
 from .programme import Ripple, SpeedProgramme
 from .programmes import build_programme
 from .rig import Surroundings
@@ -23,33 +23,6 @@ from .sensor import SensorSettings
 from .transport import TransportSettings
 
 _DEGREE = math.pi / 180.0
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class GeneralSettings:
-    """The parameters without a group."""
-
-    programme: str
-    cycles: int
-    duration: float
-    start_angle: float
-    defect: str
-    rigid_body: bool
-    publish: str
-    publish_imu: bool
-    block_size: int
-    seed: int
-    unstable: str
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MountingSettings:
-    """Those parameters ``sensor.*`` that say how the accelerometer is mounted and sampled."""
-
-    rate: float
-    radius: float
-    imu_axis: str
-    frame_id: str
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from hd_monitor.arrays import IntArray
+from hd_monitor.parameter import number
 
 from .randomness import generator
 
@@ -14,11 +15,11 @@ _LATEST = 3.0  # message intervals: a late message lets up to three others pass
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TransportSettings:
-    """Fractions of a topic's messages that are lost, arrive twice, or arrive late (after up to three later ones)."""
+    """What happens to a topic's messages: for the vibration's, the parameters ``transport.*``."""
 
-    loss: float = 0.0
-    duplicates: float = 0.0
-    late: float = 0.0
+    loss: float = number(0.0, "", 0.0, 1.0, "vibration messages lost, as a fraction")
+    duplicates: float = number(0.0, "", 0.0, 1.0, "vibration messages that come twice, as a fraction")
+    late: float = number(0.0, "", 0.0, 1.0, "vibration messages that come behind up to three later ones, as a fraction")
 
 
 class Dispatch(NamedTuple):

@@ -1,5 +1,7 @@
 """The virtual accelerometer's disturbances have the statistics that their parameters say."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -12,6 +14,7 @@ from hd_sim_node.sensor import Accelerometer, SensorSettings
 
 RATE = 1000.0
 COUNT = 100_000
+PERFECT = SensorSettings(noise=0.0)
 QUIET = SpeedProgramme(times=[0.0, 1.0], speeds=[0.0, 0.0])
 
 
@@ -21,19 +24,19 @@ def still(count=COUNT):
 
 
 def measured(seed=0, count=COUNT, **values):
-    return Accelerometer(SensorSettings(**values), rate=RATE, seed=seed).measure(still(count))
+    return Accelerometer(replace(PERFECT, **values), rate=RATE, seed=seed).measure(still(count))
 
 
 def test_a_perfect_sensor_puts_out_the_acceleration():
     rig = Rig(ParametricModel(), SpeedProgramme(times=[0.0, 1.0], speeds=[0.0, 600.0], cycles=1), rate=RATE)
     chunk = rig.advance(500)
-    np.testing.assert_array_equal(Accelerometer(SensorSettings(), rate=RATE).measure(chunk), chunk.acceleration)
+    np.testing.assert_array_equal(Accelerometer(PERFECT, rate=RATE).measure(chunk), chunk.acceleration)
 
 
 def test_it_feels_the_outputs_own_acceleration_where_that_counts():
     ramp = SpeedProgramme(times=[0.0, 1.0], speeds=[0.0, 600.0], cycles=1)
     chunk = Rig(ParametricModel(), ramp, rate=RATE, surroundings=Surroundings(rigid_body=True)).advance(500)
-    felt = Accelerometer(SensorSettings(), rate=RATE).measure(chunk)
+    felt = Accelerometer(PERFECT, rate=RATE).measure(chunk)
     np.testing.assert_allclose(felt - chunk.acceleration, 600.0 * np.pi / 30.0 / 80.0, rtol=1e-9)
 
 
@@ -80,14 +83,14 @@ def test_a_stuck_sensor_repeats_its_last_value(cuts):
 
 
 def test_stamps_are_the_sampling_instants():
-    stamps = Accelerometer(SensorSettings(), rate=RATE).stamps(still(1000))
+    stamps = Accelerometer(PERFECT, rate=RATE).stamps(still(1000))
     assert stamps.dtype == np.int64
     assert stamps.tolist() == [n * 1_000_000 for n in range(1000)]
 
 
 def test_jitter_has_its_standard_deviation_and_does_not_add_up():
     chunk = still()
-    stamps = Accelerometer(SensorSettings(jitter=2e-4, delay=0.003), rate=RATE).stamps(chunk)
+    stamps = Accelerometer(replace(PERFECT, jitter=2e-4, delay=0.003), rate=RATE).stamps(chunk)
     error = stamps * 1e-9 - chunk.times
     assert error.mean() == pytest.approx(0.003, abs=4 * 2e-4 / np.sqrt(COUNT))
     assert error.std() == pytest.approx(2e-4, rel=4 / np.sqrt(2 * COUNT))

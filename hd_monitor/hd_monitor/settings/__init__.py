@@ -1,9 +1,16 @@
 """Settings of the monitor: one table of parameters, read by the node, by replay and by the tests alike."""
 
-from .groups import AnalysisSettings, DiagnosisSettings, InputSettings, LoadSettings
+from .groups import (
+    NODE_PARAMETERS,
+    PARAMETERS,
+    ROS_PARAMETERS,
+    AnalysisSettings,
+    DiagnosisSettings,
+    InputSettings,
+    LoadSettings,
+)
 from .joint_settings import JointSettings
 from .joints import set_aside_foreign, split_joints
-from .table import NODE_PARAMETERS, PARAMETERS, ROS_PARAMETERS
 
 __all__ = [
     "NODE_PARAMETERS",

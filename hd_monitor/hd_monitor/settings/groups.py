@@ -1,9 +1,14 @@
-"""The groups of a joint's parameters as types; the table holds their defaults, units, ranges and descriptions."""
+"""Everything that can be set, by group: a field declares a parameter's default, unit, range and description."""
 
 import re
 from dataclasses import dataclass
 
 from ..errors import ParameterError
+from ..parameter import choice, number, parameters_of, plain, table
+from ..reducer import Mount
+from ..sources import INPUT_SOURCES, LOAD_SOURCES
+
+AXES = ("x", "y", "z", "-x", "-y", "-z")
 
 _TOPIC = re.compile(r"/?[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*")
 
@@ -12,15 +17,47 @@ _TOPIC = re.compile(r"/?[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*")
 class InputSettings:
     """The parameters ``input.*``."""
 
-    source: str
-    axis: str
-    sensor_radius: float
-    joint_name: str
-    timeout: float
-    queue_seconds: float
-    expected_rate: float
-    reliability: str
-    clipping_limit: float
+    source: str = choice(
+        "block",
+        INPUT_SOURCES,
+        "the vibration signal; joint_effort and joint_velocity need no sensor but joint_states",
+    )
+    axis: str = choice("y", AXES, "axis of an IMU's linear acceleration that points along the motion (tangential)")
+    sensor_radius: float = number(
+        0.55,
+        "m",
+        0.0,
+        100.0,
+        "distance of the accelerometer from the joint's axis, also used to show the RMS in m/s²; with accel_stamped "
+        "and 0 < radius the angular value is still what is analysed",
+    )
+    joint_name: str = plain(
+        "", "the joint's name in joint_states; empty: the name in `joints`, or the only joint there is"
+    )
+    timeout: float = number(2.0, "s", 0.05, 3600.0, "silence after which an input counts as lost")
+    queue_seconds: float = number(
+        5.0,
+        "s",
+        0.1,
+        60.0,
+        "depth of the subscription queues, in seconds of the expected rate; Fast DDS keeps 5000 messages",
+    )
+    expected_rate: float = number(
+        1000.0, "Hz", 1.0, 100_000.0, "expected rate of the messages of the fastest input, for the depth of the queues"
+    )
+    reliability: str = choice(
+        "reliable",
+        ("reliable", "best_effort"),
+        "QoS of the subscriptions; best_effort hears every publisher, reliable loses nothing but hears reliable "
+        "publishers only",
+    )
+    clipping_limit: float = number(
+        0.0,
+        "rad/s²",
+        0.0,
+        1e9,
+        "full scale of the sensor, above which samples count as clipped; 0: recognise flat tops",
+    )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -33,10 +70,29 @@ class LoadSettings:
         If the topic is not a name that ROS allows.
     """
 
-    source: str
-    torque: float
-    topic: str
-    axis: str
+    source: str = choice(
+        "auto",
+        LOAD_SOURCES,
+        "where the transmitted torque comes from; auto: effort if joint_states has it, else load.torque; wrench: a "
+        "force-torque sensor",
+    )
+    torque: float = number(
+        10.0,
+        "N·m",
+        -1e6,
+        1e6,
+        "mean torque on the output where no effort is measured; 0: unknown, indexes are then relative",
+    )
+    topic: str = plain(
+        "",
+        "topic of the torque's sensor with load.source: wrench; empty: wrench, below the joint's name with several "
+        "joints",
+    )
+    axis: str = choice(
+        "z",
+        AXES,
+        "axis of the wrench that points along the joint's axis, with the sign that an effort would have",
+    )
 
     def __post_init__(self) -> None:
         """Refuse a topic that cannot be subscribed to."""
@@ -51,12 +107,20 @@ class LoadSettings:
 class AnalysisSettings:
     """The parameters ``analysis.*``."""
 
-    harmonics: int
-    period: float
-    memory: float
-    max_gap: float
-    minimum_speed: float
-    rms_bin_width: float
+    harmonics: int = number(3, "", 1, 8, "line pairs identified, k = 1 … harmonics")
+    period: float = number(1.0, "s", 0.1, 60.0, "time between two verdicts, by message stamps")
+    memory: float = number(120.0, "s", 1.0, 86_400.0, "time of motion over which the evidence fades")
+    max_gap: float = number(
+        0.05,
+        "s",
+        0.0,
+        10.0,
+        "longest hole in the vibration signal that is bridged by leaving samples out; a longer one cuts",
+    )
+    minimum_speed: float = number(
+        30.0, "rpm", 0.0, 100_000.0, "wave-generator speed below which the joint counts as standing"
+    )
+    rms_bin_width: float = number(100.0, "rpm", 1.0, 10_000.0, "width of the speed bins of the RMS curve")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -69,14 +133,28 @@ class DiagnosisSettings:
         If the limits contradict each other.
     """
 
-    warn_index: float
-    error_index: float
-    both_ratio: float
-    confidence: float
-    hysteresis: float
-    confirm_count: int
-    confirm_window: int
-    latch: bool
+    warn_index: float = number(0.05, "", 0.0, 1.0, "stiffness index (fraction) above which a spline is suspect")
+    error_index: float = number(0.08, "", 0.0, 2.0, "stiffness index (fraction) above which a spline is defective")
+    both_ratio: float = number(
+        0.87,
+        "",
+        0.0,
+        1.0,
+        "both splines are named where the smaller index is above the limit and at least this part of the larger",
+    )
+    confidence: float = number(
+        0.99,
+        "",
+        0.5,
+        0.999999,
+        "probability that a named part must have on the evidence; below it the verdict is undetermined",
+    )
+    hysteresis: float = number(
+        0.1, "", 0.0, 0.9, "part of a limit by which an index must fall below it before the status improves"
+    )
+    confirm_count: int = number(2, "", 1, 100, "verdicts (N) that must agree before the status changes")
+    confirm_window: int = number(3, "", 1, 100, "number of last verdicts (M) looked at for that")
+    latch: bool = plain(False, "keep the worst status until the latch is reset")
 
     def __post_init__(self) -> None:
         """Refuse limits that contradict each other."""
@@ -90,3 +168,34 @@ class DiagnosisSettings:
                 f"diagnosis.confirm_count = {self.confirm_count} can never be reached within "
                 f"diagnosis.confirm_window = {self.confirm_window} verdicts"
             )
+
+
+PARAMETERS = (
+    *table(
+        "reducer.",
+        flexspline_teeth=number(160, "", 1, 10_000, "teeth of the flexspline, z1"),
+        circular_spline_teeth=number(162, "", 1, 10_000, "teeth of the circular spline, z2 (usually z1 + 2)"),
+        mount=choice("circular_spline_fixed", Mount, "the spline that stands still"),
+        serial=plain("", "serial number of the reducer, shown as hardware_id"),
+    ),
+    *table(
+        "dynamics.",
+        natural_frequency=number(55.0, "Hz", 0.5, 2000.0, "torsional natural frequency of the joint with its load"),
+        damping_ratio=number(0.023, "", 1e-4, 0.7, "fraction of critical damping"),
+        inertia=number(0.29, "kg·m²", 1e-6, 1e6, "inertia that the reducer drives, seen at its output"),
+        refine=plain(
+            True, "refine natural frequency and damping on line where the speed varies enough to determine them"
+        ),
+    ),
+    *parameters_of(InputSettings, "input."),
+    *parameters_of(LoadSettings, "load."),
+    *parameters_of(AnalysisSettings, "analysis."),
+    *parameters_of(DiagnosisSettings, "diagnosis."),
+)
+"""Parameters of a joint."""
+
+NODE_PARAMETERS = table(autostart=plain(True, "come up configured and active, without a lifecycle manager"))
+"""Parameters of the node as a whole, besides `joints`: they say nothing about any joint."""
+
+ROS_PARAMETERS = ("use_sim_time", "start_type_description_service")
+"""Parameters that every ROS node has of its own."""

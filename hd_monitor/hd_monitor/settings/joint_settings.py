@@ -9,8 +9,7 @@ from ..model.parameters import Dynamics
 from ..parameter import Value, check_all, fill_group
 from ..reducer import Reducer
 from ..sources import INPUT_SOURCES, JOINT_STATES, LOAD_SOURCES, Quantity, Source
-from .groups import AnalysisSettings, DiagnosisSettings, InputSettings, LoadSettings
-from .table import PARAMETERS
+from .groups import PARAMETERS, AnalysisSettings, DiagnosisSettings, InputSettings, LoadSettings
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

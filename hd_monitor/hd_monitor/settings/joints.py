@@ -5,8 +5,8 @@ from typing import Any
 
 from ..errors import ParameterError
 from ..parameter import flatten
+from .groups import NODE_PARAMETERS, PARAMETERS, ROS_PARAMETERS
 from .joint_settings import JointSettings
-from .table import NODE_PARAMETERS, PARAMETERS, ROS_PARAMETERS
 
 _BY_NAME = {parameter.name: parameter for parameter in PARAMETERS}
 _NO_JOINT_NAMES = {parameter.name for parameter in NODE_PARAMETERS} | set(ROS_PARAMETERS)
