@@ -1,1 +1,11 @@
-"""Lines at known orders of a joint's rotation: segments, whitening, regression, spectra, RMS by speed."""
+"""Lines at known orders of a joint's rotation, and other ways to look at a vibration along its motion.
+
+The regression on lines, from data to what is known of them::
+
+    joint samples → joint_segment: cut, averaged
+    → segment_products (whitened by whitening), scan (every order of a range), spectrum (binned by angle): Products
+    → regression: pool, solve with the orders of line_orders → LineFit: phasors, covariance, chances, evidence
+
+A line's order counts its cycles per output revolution. Reference orders are where there is no line: what a fit finds
+there is the noise floor. `zoom` and `rms_curve` show what the paper shows; `steady` finds motion at one speed.
+"""

@@ -11,10 +11,11 @@ from ...acquisition.record import Record, join_records
 from ...arrays import BoolArray, FloatArray
 from ...errors import ParameterError
 from ...orders.orthonormal import orthonormal
+from ...orders.regression import line_columns
 from ...reducer import Reducer
 from .decimation import decimate
 from .path import Motion, Path, paths_along
-from .tones import foreign_tones, tone_columns
+from .tones import foreign_tones
 from .torque import own_acceleration, regress_torque
 
 FREQUENCY_MARGIN = 1.25
@@ -209,11 +210,11 @@ class SegmentBuilder:
         if float(np.ptp(motion.acceleration)) > 0.0:
             parts.append(motion.acceleration[:, None])
         if self.inertial:
-            parts.append(np.stack([np.cos(motion.angle), np.sin(motion.angle)], axis=1))
+            parts.append(line_columns(motion.angle, [1.0]))
         if not self.keep_tones:
             tones = foreign_tones(values, motion.step, *self._own_lines(motion))
             if tones.size:
-                parts.append(tone_columns(tones, size, motion.step))
+                parts.append(line_columns(math.tau * motion.step * np.arange(size), tones))
         return orthonormal(np.concatenate(parts, axis=1) * used[:, None])
 
     def _own_lines(self, motion: Motion) -> tuple[FloatArray, float]:

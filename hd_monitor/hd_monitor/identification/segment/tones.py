@@ -1,7 +1,5 @@
 """Foreign tones in a vibration signal: mains hum or a neighbouring machine, at frequencies where there is no line."""
 
-import math
-
 import numpy as np
 from scipy import fft
 from scipy.signal import get_window
@@ -57,9 +55,3 @@ def foreign_tones(values: FloatArray, period: float, own: FloatArray, width: flo
         tones.append(bin_width * (peak + (0.5 * (before - after) / bend if bend < 0.0 else 0.0)))
         left[max(peak - _NEAREST, 0) : peak + _NEAREST + 1] = 0.0
     return np.asarray(tones)
-
-
-def tone_columns(frequencies: FloatArray, samples: int, period: float) -> FloatArray:
-    """Cosine and sine of every tone at the samples, shape (samples, 2 * tones)."""
-    phase = math.tau * period * np.multiply.outer(np.arange(samples), frequencies)
-    return np.concatenate([np.cos(phase), np.sin(phase)], axis=1)

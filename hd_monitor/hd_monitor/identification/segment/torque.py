@@ -12,6 +12,7 @@ from scipy.ndimage import gaussian_filter1d
 from scipy.signal import get_window
 
 from ...arrays import FloatArray
+from ...orders.regression import line_columns
 
 SLOW = 0.08
 """Standard deviation [s] of the smoothing of what angle and motion do not explain: 2 Hz."""
@@ -50,7 +51,7 @@ def regress_torque(
         return torque
     top = float(np.abs(speed).max()) or 1.0
     terms = [np.stack([speed / top, np.tanh(speed / (_FRICTION_SPEED * top))], axis=1), acceleration[:, None]]
-    terms += [np.stack([np.cos(order * angle), np.sin(order * angle)], axis=1) for order in _LOAD_ORDERS]
+    terms += [line_columns(angle, [order]) for order in _LOAD_ORDERS]
     explained = _projection(torque, terms)
     variance = _noise_density(torque - explained, period) / (2.0 * period)
     while terms:

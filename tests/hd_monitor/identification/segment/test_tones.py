@@ -1,9 +1,12 @@
-"""Foreign tones: found where no line can be, left alone where one is."""
+"""Foreign tones are found away from the lines and ignored on them."""
+
+import math
 
 import numpy as np
 import pytest
 
-from hd_monitor.identification.segment.tones import MOST_TONES, foreign_tones, tone_columns
+from hd_monitor.identification.segment.tones import MOST_TONES, foreign_tones
+from hd_monitor.orders.regression import line_columns
 
 PERIOD, COUNT = 1e-3, 3000
 TIMES = np.arange(COUNT) * PERIOD
@@ -48,7 +51,7 @@ def test_a_segment_that_is_too_short_has_no_tones():
 
 
 def test_the_columns_remove_a_tone_of_any_phase():
-    columns = tone_columns(np.array([50.123]), COUNT, PERIOD)
+    columns = line_columns(math.tau * PERIOD * np.arange(COUNT), [50.123])
     signal = tone(50.123, 2.0)
     rest = signal - columns @ np.linalg.lstsq(columns, signal, rcond=None)[0]
     assert np.abs(rest).max() < 1e-9
