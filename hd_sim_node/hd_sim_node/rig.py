@@ -186,8 +186,7 @@ class Rig:
         times = index[:-1] / self.rate
         angle, torque = self.angle(times), self.torque(times)
         if self._state is None:
-            stiffness = model.dynamics.stiffness * (1.0 + float(model.stiffness_fluctuation(angle[0])))
-            self._state = (float(torque[0]) / stiffness, 0.0)
+            self._state = (float(torque[0] / model.stiffness(angle[0])), 0.0)
         fine = oscillator.respond(self.torque(gauss) / inertia, self._state)
         at = ends - substeps
         displacement, velocity = fine.displacement[at], fine.velocity[at]

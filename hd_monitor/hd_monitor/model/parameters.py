@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from numpy.polynomial.polynomial import polyval
 
 from ..arrays import ComplexArray, FloatArray
 from ..errors import ParameterError
@@ -114,10 +115,7 @@ class StiffnessSeries:
     def __call__(self, angle: npt.ArrayLike) -> FloatArray:
         """Relative stiffness fluctuation at the spline's phase angle [rad], any shape."""
         unit = np.exp(1j * np.asarray(angle, dtype=np.float64))
-        total = np.zeros(unit.shape, dtype=np.complex128)
-        for phasor in self.phasors[::-1]:  # Horner: one complex exponential however many harmonics there are
-            total = (total + phasor) * unit
-        return np.asarray(total.real)
+        return np.asarray(polyval(unit, [0.0, *self.phasors]).real)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -188,6 +186,10 @@ class ParametricModel:
         orders = self.reducer.output_orders
         return self.circular_spline(orders.circular_spline * q) + self.flexspline(orders.flexspline * q)
 
+    def stiffness(self, output_angle: npt.ArrayLike) -> FloatArray:
+        """Stiffness K [N·m/rad] (eq. 2) at the output angle q [rad], any shape."""
+        return self.dynamics.stiffness * (1.0 + self.stiffness_fluctuation(output_angle))
+
     def torque_at(self, output_angle: npt.ArrayLike) -> FloatArray:
         """Torque M [N·m] (eq. 4) at the output angle q [rad], any shape."""
         q = np.asarray(output_angle, dtype=np.float64)
@@ -210,8 +212,7 @@ class ParametricModel:
 
     def static_deflection(self, output_angle: npt.ArrayLike) -> FloatArray:
         """Wind-up M/K [rad] of the output at rest at the output angle q [rad], any shape."""
-        stiffness = self.dynamics.stiffness * (1.0 + self.stiffness_fluctuation(output_angle))
-        return self.torque_at(output_angle) / stiffness
+        return self.torque_at(output_angle) / self.stiffness(output_angle)
 
 
 def table_1(**changes: Any) -> ParametricModel:

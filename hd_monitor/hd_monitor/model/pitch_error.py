@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from numpy.polynomial.polynomial import polyval
 
 from ..arrays import FloatArray
 from ..errors import ParameterError
@@ -78,16 +79,13 @@ class PitchErrors:
         """
         angle = np.asarray(lobe_angle, dtype=np.float64)
         count = len(self.accumulated)
-        spectrum = np.fft.rfft(self.accumulated) / count
-        order = np.arange(spectrum.size)
-        spectrum = spectrum * np.sinc(order * MESHED_FRACTION / 2.0)
-        odd = spectrum[1::2]
-        # E(α) - E(α + π): even orders cancel, odd ones double; a real series counts each order twice
-        weight = np.where((order[1::2] * 2 == count), 1.0, 2.0)
-        difference = np.zeros(angle.shape)
-        for coefficient, number, twice in zip(odd, order[1::2], weight, strict=True):
-            difference += 2.0 * twice * (coefficient * np.exp(1j * number * angle)).real
-        return np.abs(difference)
+        phasors = 2.0 * np.fft.rfft(self.accumulated) / count
+        if count % 2 == 0:
+            phasors[-1] /= 2.0  # half the number of teeth is its own negative order
+        # E(α) - E(α + π): even orders cancel, odd ones double
+        phasors[::2] = 0.0
+        phasors *= 2.0 * np.sinc(np.arange(phasors.size) * MESHED_FRACTION / 2.0)
+        return np.abs(polyval(np.exp(1j * angle), phasors).real)
 
     def stiffness_series(self, sensitivity: float, harmonics: int = 3) -> StiffnessSeries:
         """Stiffness fluctuation that the interference causes, over the spline's own phase 2·(lobe angle).

@@ -15,7 +15,7 @@ AngleFunction = Callable[[FloatArray], FloatArray]
 """Output angle q [rad] at times [s], any shape."""
 
 
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class TimeResponse:
     """Torsional vibration sampled at a constant rate.
 
@@ -23,8 +23,6 @@ class TimeResponse:
     ----------
     rate : float
         Samples per second [Hz].
-    times : ndarray, shape (samples,)
-        [s], from 0.
     output_angle : ndarray, shape (samples,)
         Kinematic output angle q [rad].
     displacement, velocity, acceleration : ndarray, shape (samples,)
@@ -32,23 +30,21 @@ class TimeResponse:
     """
 
     rate: float
-    times: FloatArray
     output_angle: FloatArray
     displacement: FloatArray
     velocity: FloatArray
     acceleration: FloatArray
 
+    @property
+    def times(self) -> FloatArray:
+        """Times of the samples [s], from 0, shape (samples,)."""
+        return np.arange(self.output_angle.size) / self.rate
+
     def after(self, time: float) -> "TimeResponse":
         """Return the part from `time` [s] on; its times start at 0 again."""
-        first = int(np.searchsorted(self.times, time - 0.5 / self.rate))
-        return TimeResponse(
-            rate=self.rate,
-            times=self.times[first:] - self.times[first] if first < self.times.size else self.times[first:],
-            output_angle=self.output_angle[first:],
-            displacement=self.displacement[first:],
-            velocity=self.velocity[first:],
-            acceleration=self.acceleration[first:],
-        )
+        first = round(time * self.rate)
+        arrays = self.output_angle, self.displacement, self.velocity, self.acceleration
+        return TimeResponse(self.rate, *(values[first:] for values in arrays))
 
 
 def constant_speed(reducer: Reducer, speed_rpm: float) -> AngleFunction:
@@ -97,7 +93,6 @@ def simulate(model: ParametricModel, output_angle: AngleFunction, *, duration: f
     displacement, velocity = oscillator.respond(model.torque_at(between) / model.dynamics.inertia, start)
     return TimeResponse(
         rate=rate,
-        times=times,
         output_angle=angle,
         displacement=displacement,
         velocity=velocity,

@@ -41,20 +41,7 @@ def growth_rate(model: ParametricModel, speed_rpm: float) -> float:
 
 
 def stability_chart(model: ParametricModel, speeds_rpm: npt.ArrayLike, scales: npt.ArrayLike) -> FloatArray:
-    """Growth rates [1/s] over speed and defect size: a Strutt-like chart.
-
-    Parameters
-    ----------
-    model : ParametricModel
-    speeds_rpm : array_like, shape (speeds,)
-        Wave-generator speeds [rpm].
-    scales : array_like, shape (sizes,)
-        Factors on all stiffness indexes β of the model.
-
-    Returns
-    -------
-    ndarray, shape (sizes, speeds)
-    """
+    """Growth rates [1/s] over wave-generator speeds [rpm] and factors on all indexes β, shape (scales, speeds)."""
     models = [scale_defects(model, float(scale)) for scale in np.asarray(scales)]
     return np.array([[growth_rate(scaled, float(speed)) for speed in np.asarray(speeds_rpm)] for scaled in models])
 

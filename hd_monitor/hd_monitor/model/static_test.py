@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from ..arrays import FloatArray
 from ..errors import ParameterError
-from .parameters import ParametricModel
+from .parameters import ParametricModel, StiffnessSeries
 
 _LOAD_STEPS = 10  # evenly spaced torques from zero (not included) to the largest
 
@@ -64,9 +64,7 @@ class StaticTestBed:
         ndarray, shape (positions,)
             Slope dT/dφ [N·m/rad] (eq. 1) of the readings, by least squares.
         """
-        angles = np.asarray(wave_generator_angles, dtype=np.float64)
-        fluctuation = model.stiffness_fluctuation(angles / model.reducer.reduction)
-        stiffness = model.dynamics.stiffness * (1.0 + fluctuation)
+        stiffness = model.stiffness(np.asarray(wave_generator_angles, dtype=np.float64) / model.reducer.reduction)
         torque = self.torque * np.arange(1, _LOAD_STEPS + 1) / _LOAD_STEPS
         twist = torque / stiffness[..., None]
         read_torque = _read(torque / self.force_arm, self.force_resolution) * self.force_arm
@@ -75,28 +73,28 @@ class StaticTestBed:
         return np.asarray((read_torque * read_torque).sum() / (read_twist * read_torque).sum(axis=-1))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class StiffnessFit:
-    """A curve through static stiffness readings: mean and harmonics of twice a wave-generator revolution.
+    """Static stiffness readings and the curve through them.
 
     Attributes
     ----------
+    angle, readings : ndarray, shape (positions,)
+        Of the wave generator, φ [rad], and the stiffness there [N·m/rad].
     mean : float
         Kav [N·m/rad].
-    phasors : ndarray of complex, shape (harmonics,)
-        K = mean·(1 + Σ Re(phasor_k exp(2jkφ))).
+    series : StiffnessSeries
+        K = mean·(1 + series(2φ)).
     """
 
+    angle: FloatArray
+    readings: FloatArray
     mean: float
-    phasors: tuple[complex, ...]
+    series: StiffnessSeries
 
     def __call__(self, wave_generator_angle: npt.ArrayLike) -> FloatArray:
         """Fitted stiffness [N·m/rad] at wave-generator angles [rad], any shape."""
-        phi = np.asarray(wave_generator_angle, dtype=np.float64)
-        relative = np.ones(phi.shape)
-        for k, phasor in enumerate(self.phasors, start=1):
-            relative += (phasor * np.exp(2j * k * phi)).real
-        return self.mean * relative
+        return self.mean * (1.0 + self.series(2.0 * np.asarray(wave_generator_angle)))
 
     @property
     def index(self) -> float:
@@ -131,18 +129,16 @@ def fit_stiffness(
     """
     phi = np.asarray(wave_generator_angles, dtype=np.float64)
     values = np.asarray(stiffness, dtype=np.float64)
-    columns = [np.ones(phi.shape)]
-    for k in range(1, harmonics + 1):
-        columns += [np.cos(2 * k * phi), -np.sin(2 * k * phi)]
-    matrix = np.stack(columns, axis=1)
+    waves = np.exp(2j * np.multiply.outer(phi, np.arange(1, harmonics + 1)))
+    matrix = np.column_stack([np.ones(phi.size), waves.real, -waves.imag])
     solution, _, rank, _ = np.linalg.lstsq(matrix, values, rcond=1e-9)
     if rank < matrix.shape[1]:
         raise ParameterError(
             f"{phi.size} positions do not separate {harmonics} harmonics; measure at more positions or fit fewer"
         )
     mean = float(solution[0])
-    pairs = solution[1:].reshape(-1, 2) / mean
-    return StiffnessFit(mean=mean, phasors=tuple(complex(a, b) for a, b in pairs))
+    phasors = (solution[1 : harmonics + 1] + 1j * solution[harmonics + 1 :]) / mean
+    return StiffnessFit(angle=phi, readings=values, mean=mean, series=StiffnessSeries.from_phasors(phasors))
 
 
 def _read(value: FloatArray, resolution: float) -> FloatArray:

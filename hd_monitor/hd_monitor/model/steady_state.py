@@ -95,24 +95,20 @@ def steady_state(
         raise ParameterError(f"speed = {speed_rpm!r} rpm has no line frequencies; give a speed other than 0")
     omega = speed_rpm * 2.0 * np.pi / 60.0 / model.reducer.reduction
     orders = combination_orders(model, combination_order)
-    position = {int(order): index for index, order in enumerate(orders)}
     wn, zeta = model.dynamics.angular_frequency, model.dynamics.damping_ratio
     w = orders * omega
     matrix = np.diag(wn**2 - w**2 + 2j * zeta * wn * w)
-    rows = np.arange(orders.size)
+    shifts = np.subtract.outer(orders, orders)
     cs, fs = (round(x) for x in model.reducer.output_orders)
     for series, base in ((model.circular_spline, cs), (model.flexspline, fs)):
         for harmonic, phasor in enumerate(series.phasors, start=1):
-            for shift, coefficient in ((harmonic * base, phasor / 2), (-harmonic * base, np.conj(phasor) / 2)):
-                column = np.array([position.get(int(order - shift), -1) for order in orders])
-                hit = column >= 0
-                matrix[rows[hit], column[hit]] += wn**2 * coefficient
+            _add_cosine(matrix, shifts, harmonic * base, wn**2 * phasor)
+    given = model.torque
     torque = np.zeros(orders.size, dtype=np.complex128)
-    _add_cosine(torque, position, 0, model.torque.mean)
+    _add_cosine(torque, orders, 0, given.mean)
     drive_order = round(WAVE_GENERATOR_LOBES * model.reducer.reduction)
-    _add_cosine(torque, position, drive_order, model.torque.drive_fluctuation * np.exp(1j * model.torque.drive_phase))
-    load = model.torque.load_fluctuation * np.exp(1j * model.torque.load_phase)
-    _add_cosine(torque, position, model.torque.load_order, load)
+    _add_cosine(torque, orders, drive_order, given.drive_fluctuation * np.exp(1j * given.drive_phase))
+    _add_cosine(torque, orders, given.load_order, given.load_fluctuation * np.exp(1j * given.load_phase))
     return SteadyState(orders, np.linalg.solve(matrix, torque / model.dynamics.inertia), omega)
 
 
@@ -126,8 +122,7 @@ def line_pairs(model: ParametricModel, speed_rpm: float, harmonics: int = 4) -> 
     )
 
 
-def _add_cosine(coefficients: ComplexArray, position: dict[int, int], order: int, phasor: complex) -> None:
-    """Add the two-sided coefficients of Re(phasor·exp(j order q))."""
-    for line, value in ((order, phasor / 2), (-order, np.conj(phasor) / 2)):
-        if line in position:
-            coefficients[position[line]] += value
+def _add_cosine(coefficients: ComplexArray, orders: IntArray, order: int, phasor: complex) -> None:
+    """Add the two-sided coefficients of Re(phasor·exp(j order q)) where `orders` has them."""
+    coefficients[orders == order] += phasor / 2
+    coefficients[orders == -order] += np.conj(phasor) / 2

@@ -35,7 +35,7 @@ def test_fit_returns_mean_index_and_phase(beta, phase):
     fit = fit_stiffness(EVERY_30, readings)
     assert fit.mean == pytest.approx(30_000.0)
     assert fit.index == pytest.approx(beta, rel=1e-5)
-    assert np.exp(1j * np.angle(fit.phasors[0])) == pytest.approx(np.exp(1j * phase))
+    assert np.exp(1j * np.angle(fit.series.phasors[0])) == pytest.approx(np.exp(1j * phase))
     assert fit(EVERY_30) == pytest.approx(readings)
 
 
