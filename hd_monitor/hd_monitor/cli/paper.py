@@ -11,8 +11,7 @@ from pathlib import Path
 
 from ..errors import HdMonitorError
 from ..paper.cases import has_cases, load_own_case, load_paper_cases
-from ..paper.claim import Outcome
-from ..paper.exhibit import all_claims
+from ..paper.exhibit import Outcome
 from ..paper.own_reducer import FIGURES
 from ..paper.reproduction import EXHIBITS, compute
 from ..paper.table import claim_table, fact_table
@@ -87,7 +86,7 @@ def run(arguments: argparse.Namespace) -> int:
     _progress(arguments)(
         f"{len(exhibits)} of {len(FIGURES if own else EXHIBITS)} in {time.perf_counter() - start:.1f} s"
     )
-    return int(any(claim.outcome is Outcome.FAIL for claim in all_claims(exhibits)))
+    return int(any(claim.outcome is Outcome.FAIL for exhibit in exhibits.values() for claim in exhibit.claims))
 
 
 def _progress(arguments: argparse.Namespace) -> Callable[[str], None]:

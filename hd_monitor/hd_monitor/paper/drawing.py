@@ -24,8 +24,8 @@ _PER_ROW = 2
 _MOST_COLUMNS = 4  # of a legend
 
 
-def figure_of(exhibit: Exhibit) -> Figure:
-    """Draw an exhibit's panels side by side."""
+def figure_of(name: str, exhibit: Exhibit) -> Figure:
+    """Draw an exhibit's panels side by side, under its name and title."""
     count = len(exhibit.panels)
     columns = min(count, _PER_ROW)
     rows = -(-count // columns)
@@ -37,14 +37,14 @@ def figure_of(exhibit: Exhibit) -> Figure:
         row, column = divmod(number, columns)
         alone = number == count - 1 and column == 0
         _draw(figure.add_subplot(grid[row, :] if alone else grid[row, column]), panel, figure)
-    figure.suptitle(f"{exhibit.id}  {exhibit.title}", fontsize=11, fontweight="bold")
+    figure.suptitle(f"{name}  {exhibit.title}", fontsize=11, fontweight="bold")
     return figure
 
 
-def png(exhibit: Exhibit) -> bytes:
+def png(name: str, exhibit: Exhibit) -> bytes:
     """Return the drawing as PNG."""
     buffer = io.BytesIO()
-    figure_of(exhibit).savefig(buffer, format="png", dpi=_DPI)
+    figure_of(name, exhibit).savefig(buffer, format="png", dpi=_DPI)
     return buffer.getvalue()
 
 

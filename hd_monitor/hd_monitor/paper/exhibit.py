@@ -1,11 +1,10 @@
 """The result of a figure's module: data to draw and claims to print. Nothing here knows how to draw."""
 
-from collections.abc import Iterable
 from dataclasses import dataclass
+from enum import StrEnum
 from typing import Literal
 
 from ..arrays import FloatArray
-from .claim import Claim
 
 Style = Literal["line", "fine", "dashed", "points", "stems", "dotted points"]
 
@@ -61,14 +60,56 @@ class Panel:
     """Whether the panel is drawn as a square, as a phase trace is."""
 
 
+class Outcome(StrEnum):
+    """Result of holding a claim against our number."""
+
+    PASS = "pass"
+    FAIL = "FAIL"
+    CONTRADICTION = "paper contradicts itself"
+    """The printed numbers exclude each other; ours confirms that, and the note names the convention chosen."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Claim:
+    """One statement of the paper, checked.
+
+    Attributes
+    ----------
+    statement : str
+        What is claimed.
+    paper, ours : str
+        The paper's printed value and our computed one, with units.
+    passed : bool
+        Whether ours agrees; for a contradiction, whether our numbers confirm that the printed ones exclude each other.
+    note : str
+        Why it differs, or which convention was chosen.
+    contradiction : bool
+        Whether the paper contradicts itself here.
+    """
+
+    statement: str
+    paper: str
+    ours: str
+    passed: bool
+    note: str = ""
+    contradiction: bool = False
+
+    @property
+    def outcome(self) -> Outcome:
+        """Pass, fail, or a contradiction within the paper that our numbers confirm."""
+        if not self.passed:
+            return Outcome.FAIL
+        return Outcome.CONTRADICTION if self.contradiction else Outcome.PASS
+
+
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Exhibit:
     """A figure, table or equation of the paper, recomputed.
 
     Attributes
     ----------
-    id, title : str
-        As in ``F13c``, and the paper's own caption in short.
+    title : str
+        The paper's own caption in short.
     caption : str
         What is drawn and with which parameters.
     panels : tuple of Panel
@@ -77,14 +118,8 @@ class Exhibit:
         Results to print that no claim is held against: (name, value with unit).
     """
 
-    id: str
     title: str
     caption: str
     panels: tuple[Panel, ...] = ()
     claims: tuple[Claim, ...] = ()
     facts: tuple[tuple[str, str], ...] = ()
-
-
-def all_claims(exhibits: Iterable[Exhibit]) -> tuple[Claim, ...]:
-    """Return every claim of the exhibits, in their order."""
-    return tuple(claim for exhibit in exhibits for claim in exhibit.claims)

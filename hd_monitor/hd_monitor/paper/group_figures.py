@@ -11,8 +11,7 @@ from ..model import ParametricModel
 from ..orders.zoom import Zoom
 from . import printed
 from .cases import Case, Cases
-from .claim import Claim
-from .exhibit import Curve, Exhibit, Mark, Panel
+from .exhibit import Claim, Curve, Exhibit, Mark, Panel
 from .line_figures import MICRO, spectrum_panel
 from .records import REVOLUTIONS, SteadyRecord, steady_record
 
@@ -118,7 +117,6 @@ def figure_9(cases: Cases) -> Exhibit:
     as_rad = printed.LOAD_FREQUENCY.value / (2.0 * np.pi)
     rise = min(line.amplitude / line.unloaded for line in (second[0], second[-1]))
     return Exhibit(
-        id="F9",
         title="The combined harmonic group in the spectrum of forced parametric vibration",
         caption=f"Table 1 with a load fluctuation of {model.torque.load_fluctuation:g} N·m, {model.torque.load_order} "
         f"per output revolution, {case.speed:g} rpm; displacement, {REVOLUTIONS} output revolutions, Hann window.",
@@ -178,7 +176,6 @@ def figure_14(cases: Cases) -> Exhibit:
     nearest = min((abs((z + 2) / z - printed_ratio), z) for z in range(100, 400))[1]
     spacing = np.diff([line.frequency for line in lines])
     return Exhibit(
-        id="F14",
         title="Combined harmonic group in torsional vibration",
         caption=f"The rig at {case.speed:g} rpm with a load fluctuation of {model.torque.load_fluctuation:g} N·m, "
         f"{model.torque.load_order} per output revolution.",

@@ -10,8 +10,7 @@ from ..orders.zoom import Zoom, zoom_spectrum
 from ..reducer import LinePair
 from . import printed
 from .cases import Case, Cases
-from .claim import Claim
-from .exhibit import Curve, Exhibit, Mark, Panel
+from .exhibit import Claim, Curve, Exhibit, Mark, Panel
 from .records import REVOLUTIONS, SteadyRecord, local_maxima, spectrum, steady_record
 
 UNEVEN = 3.7
@@ -107,7 +106,6 @@ def figure_8(cases: Cases) -> Exhibit:
     right = _heights(replace(model, circular_spline=StiffnessSeries()), case.speed)
     left_only, right_only = left.circular_spline / left.flexspline, right.flexspline / right.circular_spline
     return Exhibit(
-        id="F8",
         title="The bi-spectra in the spectrum of forced parametric vibration",
         caption=f"Table 1, fn = {model.dynamics.natural_frequency:g} Hz, ζ = {model.dynamics.damping_ratio:g}, "
         f"M0 = {model.torque.mean:g} N·m, {case.speed:g} rpm; displacement, {REVOLUTIONS} output revolutions, "
@@ -168,7 +166,6 @@ def equation_5(cases: Cases) -> Exhibit:
     curves = [Curve(x=speeds, y=line, label=f"eq. 5, k = {k}") for k, line in zip(harmonics, expected, strict=True)]
     found = Curve(x=np.tile(speeds, len(harmonics)), y=measured.ravel(), label="measured", style="points")
     return Exhibit(
-        id="E5",
         title="Distance of the two lines of a bi-spectrum",
         caption="Peaks found in spectra of simulated vibration against Δf = k·n/30·(z2/z1 − 1).",
         panels=(

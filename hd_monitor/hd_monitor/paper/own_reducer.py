@@ -24,7 +24,6 @@ def geometry(case: Case) -> Exhibit:
     pair, mount = reducer.line_frequencies(case.speed), reducer.mount.value.replace("_", " ")
     travel = [np.rad2deg(reducer.travel_to_separate(k, window="boxcar")) for k in (1, 2, 3)]
     return Exhibit(
-        id="F4",
         title="Time-varying torsional stiffness",
         caption=f"{reducer.flexspline_teeth}/{reducer.circular_spline_teeth} teeth, {mount}.",
         panels=stiffness_panels(model),
@@ -50,7 +49,6 @@ def static(case: Case) -> Exhibit:
     """The static stiffness test."""
     measured = static_measurement(case)
     return Exhibit(
-        id="F7",
         title="Static torsional stiffness",
         caption=f"Virtual test bed, {case.static_test.torque:g} N·m.",
         panels=(static_panel(case, measured, "Static stiffness"),),
@@ -62,7 +60,6 @@ def spectra(case: Case) -> Exhibit:
     """Spectrum and zoom spectra at the case's speed."""
     pairs = line_pairs(case.model, case.speed)
     return Exhibit(
-        id="F8",
         title=f"Bi-spectra at {case.speed:g} rpm",
         caption=f"Displacement, {REVOLUTIONS} output revolutions, Hann window.",
         panels=bispectra_panels(case, steady_record(case.model, case.speed)),
@@ -76,7 +73,6 @@ def spectra(case: Case) -> Exhibit:
 def sweep(case: Case) -> Exhibit:
     """Envelope of a sweep."""
     return Exhibit(
-        id="F10",
         title="Envelope of a sweep",
         caption=f"ωo2/2π from {case.sweep.start:g} to {case.sweep.stop:g} Hz at {case.sweep.rate:.3g} Hz/s.",
         panels=(sweep_panel(case, sweep_response(case), "Sweep"),),
@@ -86,7 +82,6 @@ def sweep(case: Case) -> Exhibit:
 def history(case: Case) -> Exhibit:
     """Time history at the case's speed."""
     return Exhibit(
-        id="F13",
         title=f"Time history at {case.speed:g} rpm",
         caption=f"Tangential acceleration at {case.sensor_radius:g} m.",
         panels=(beat_panel(case, steady_record(case.model, case.speed)),),
@@ -99,7 +94,6 @@ def curve(case: Case) -> Exhibit:
     speed, rms = measured.highest
     unstable = ", ".join(f"{n:g}" for n in measured.speed[measured.growth >= 0.0])
     return Exhibit(
-        id="F16",
         title="Property of torsional vibration-speed",
         caption=f"RMS of the tangential acceleration at {case.sensor_radius:g} m in the steady state.",
         panels=(curve_panel(case, measured, "Property curve"),),
@@ -114,7 +108,6 @@ def curve(case: Case) -> Exhibit:
 def trace(case: Case) -> Exhibit:
     """Phase trace at the case's speed."""
     return Exhibit(
-        id="F17",
         title=f"Phase trace at {case.speed:g} rpm",
         caption="Displacement and velocity in the steady state.",
         panels=phase_panels(case, steady_record(case.model, case.speed)),
@@ -125,7 +118,6 @@ def chart(case: Case) -> Exhibit:
     """Stability chart over the size of the defects."""
     coarse = replace(case, speeds=case.speeds._replace(step=(case.speeds.stop - case.speeds.start) / 80.0))
     return Exhibit(
-        id="ST",
         title="Stability chart",
         caption="Floquet growth rate with all indexes scaled; the black line is the limit of stability.",
         panels=(chart_panel(coarse),),

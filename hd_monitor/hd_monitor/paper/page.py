@@ -1,32 +1,19 @@
 """One self-contained HTML page: the claims' table and the figures."""
 
 import base64
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from .claim import Outcome
-from .exhibit import Exhibit, all_claims
-from .printed import CONTRADICTIONS
+from .exhibit import Exhibit, Outcome
 from .table import summary
 
 PAGE = "index.html"
 
 
-def page(exhibits: Sequence[Exhibit], pictures: Mapping[str, bytes], *, heading: str, command: str) -> str:
-    """Fill in the page.
-
-    Parameters
-    ----------
-    exhibits : sequence of Exhibit
-    pictures : mapping of str to bytes
-        PNG by exhibit.
-    heading : str
-    command : str
-        The command that produced this page.
-    """
-    claims = all_claims(exhibits)
+def page(exhibits: Mapping[str, Exhibit], pictures: Mapping[str, bytes], *, heading: str, command: str) -> str:
+    """Fill in the page from exhibits and their PNGs, both by name; `command` is the one that produced it."""
     environment = Environment(
         loader=PackageLoader("hd_monitor.paper", "."), autoescape=True, undefined=StrictUndefined, trim_blocks=True
     )
@@ -34,20 +21,19 @@ def page(exhibits: Sequence[Exhibit], pictures: Mapping[str, bytes], *, heading:
         heading=heading,
         command=command,
         exhibits=exhibits,
-        claims=claims,
-        summary=summary(claims),
-        contradictions=CONTRADICTIONS if claims else (),
+        claims=any(exhibit.claims for exhibit in exhibits.values()),
+        summary=summary(exhibits.values()),
         pictures={name: base64.b64encode(data).decode("ascii") for name, data in pictures.items()},
         classes={Outcome.PASS: "pass", Outcome.FAIL: "fail", Outcome.CONTRADICTION: "contradiction"},
     )
 
 
-def write_report(exhibits: Sequence[Exhibit], folder: Path, *, heading: str, command: str) -> Path:
+def write_report(exhibits: Mapping[str, Exhibit], folder: Path, *, heading: str, command: str) -> Path:
     """Write the figures as PNG and the page into a folder, created if missing; return the page's path."""
     from .drawing import png
 
     folder.mkdir(parents=True, exist_ok=True)
-    pictures = {exhibit.id: png(exhibit) for exhibit in exhibits if exhibit.panels}
+    pictures = {name: png(name, exhibit) for name, exhibit in exhibits.items() if exhibit.panels}
     for name, data in pictures.items():
         (folder / f"{name}.png").write_bytes(data)
     path = folder / PAGE

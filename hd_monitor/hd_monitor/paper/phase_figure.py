@@ -7,8 +7,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from .cases import Case, Cases
-from .claim import Claim
-from .exhibit import Curve, Exhibit, Panel, Style
+from .exhibit import Claim, Curve, Exhibit, Panel, Style
 from .records import SteadyRecord, steady_record
 
 
@@ -85,7 +84,6 @@ def figure_17(cases: Cases) -> Exhibit:
     record = steady_record(case.model, case.speed)
     measured = quasiperiodicity(case, record)
     return Exhibit(
-        id="F17",
         title=f"Phase trace at {case.speed:g} rpm",
         caption="Simulated displacement and velocity in the steady state.",
         panels=phase_panels(case, record),

@@ -7,8 +7,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..model import growth_rate, steady_state
 from .cases import Case, Cases
-from .claim import Claim
-from .exhibit import Curve, Exhibit, Panel
+from .exhibit import Claim, Curve, Exhibit, Panel
 from .records import local_maxima, steady_record
 from .rig_figures import resonance_marks, resonance_speed
 
@@ -92,7 +91,6 @@ def figure_16(cases: Cases) -> Exhibit:
         integrated = float(case.in_g(np.sqrt(np.mean(record.response.acceleration**2))))
         errors.append(abs(integrated / curve.at(n) - 1.0))
     return Exhibit(
-        id="F16",
         title="Property of torsional vibration-speed",
         caption=f"RMS at {case.sensor_radius:g} m, {case.speeds.start:g} to {case.speeds.stop:g} rpm step {step:g}, "
         "by harmonic balance.",

@@ -6,9 +6,8 @@ import numpy as np
 
 from . import printed
 from .cases import Case, Cases, PitchErrorCase
-from .claim import Claim
 from .diagnosis import diagnose, verdict_words
-from .exhibit import Curve, Exhibit, Mark, Panel
+from .exhibit import Claim, Curve, Exhibit, Mark, Panel
 from .line_figures import zoom_panel
 from .property_figures import PropertyCurve, curve_panel, property_curve
 from .records import steady_record
@@ -32,11 +31,10 @@ def _is_half(ratio: float) -> bool:
     return abs(ratio - 0.5) <= HALF_TOLERANCE
 
 
-def _figure_18(figure: str, title: str, case: Case, curve: PropertyCurve, top: float, *claims: Claim) -> Exhibit:
+def _figure_18(title: str, case: Case, curve: PropertyCurve, top: float, *claims: Claim) -> Exhibit:
     record = steady_record(case.model, case.speed)
     zoom = zoom_panel(case, record, case.in_g(record.response.acceleration), k=1, unit="g")
     return Exhibit(
-        id=figure,
         title=title,
         caption=f"A driver with fn = {case.model.dynamics.natural_frequency:g} Hz; RMS at {case.sensor_radius:g} "
         f"m, and the zoom spectrum at {case.speed:g} rpm.",
@@ -60,7 +58,6 @@ def figure_18a(cases: Cases) -> Exhibit:
     left, right = (record.amplitude(values, order) for order in case.model.reducer.output_orders)
     before = diagnose(case)
     return _figure_18(
-        "F18a",
         "Property curve, original case",
         case,
         curve,
@@ -95,7 +92,6 @@ def figure_18b(cases: Cases) -> Exhibit:
     before, after = property_curve(cases["sample_before"]).highest[1], curve.highest[1]
     verdict = diagnose(case)
     return _figure_18(
-        "F18b",
         "Property curve after change of the circular spline",
         case,
         curve,
@@ -152,7 +148,6 @@ def figure_19(cases: Cases) -> Exhibit:
         ),
     )
     return Exhibit(
-        id="F19",
         title="Teeth error in the circular spline, and the stiffness fluctuation it causes",
         caption="Eccentricity and tooth-to-tooth scatter; the interference is the difference of the errors in "
         "the two meshing zones, averaged over a quarter of the teeth, and stiffens the mesh in proportion.",
@@ -193,7 +188,6 @@ def figure_20(cases: Cases) -> Exhibit:
     low, high, margin = float(readings.min()), float(readings.max()), 0.35 * float(np.ptp(readings))
     panels = [static_panel(case, m, title) for case, m, title in zip(samples, measured, _TITLES, strict=True)]
     return Exhibit(
-        id="F20",
         title=f"Fluctuation of torsional stiffness at {samples[0].static_test.torque:g} N·m",
         caption="Virtual static test bed, every 30°.",
         panels=tuple(replace(panel, y_range=(low - margin, high + margin)) for panel in panels),

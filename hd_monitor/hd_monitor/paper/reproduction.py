@@ -18,8 +18,7 @@ from . import (
     table_1,
 )
 from .cases import Cases
-from .claim import Outcome
-from .exhibit import Exhibit
+from .exhibit import Exhibit, Outcome
 
 
 class Entry[Given](NamedTuple):
@@ -82,8 +81,8 @@ def compute[Given](
     given: Given,
     only: Iterable[str] = (),
     progress: Callable[[str], None] = lambda line: None,
-) -> tuple[Exhibit, ...]:
-    """Compute one exhibit after another.
+) -> dict[str, Exhibit]:
+    """Compute one exhibit after another; return them by their names.
 
     Parameters
     ----------
@@ -97,13 +96,12 @@ def compute[Given](
         Gets one line per exhibit when it is done.
     """
     chosen = select(only, entries)
-    done = []
+    done = {}
     for number, entry in enumerate(chosen, start=1):
         start = time.perf_counter()
-        exhibit = entry.compute(given)
-        done.append(exhibit)
+        done[entry.id] = exhibit = entry.compute(given)
         failed = sum(claim.outcome is Outcome.FAIL for claim in exhibit.claims)
         state = f"{failed} of {len(exhibit.claims)} claims FAIL" if failed else "ok"
         seconds = time.perf_counter() - start
         progress(f"[{number:2d}/{len(chosen)}] {entry.id:5s} {entry.about}: {state}, {seconds:.1f} s")
-    return tuple(done)
+    return done

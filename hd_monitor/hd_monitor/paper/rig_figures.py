@@ -10,9 +10,8 @@ from ..model import line_pairs
 from ..reducer import LinePair
 from . import printed
 from .cases import Case, Cases
-from .claim import Claim
 from .diagnosis import diagnose, verdict_words
-from .exhibit import Curve, Exhibit, Mark, Panel
+from .exhibit import Claim, Curve, Exhibit, Mark, Panel
 from .line_figures import spectrum_panel, zoom_panel
 from .records import REVOLUTIONS, SteadyRecord, spectrum, steady_record
 
@@ -70,7 +69,6 @@ def figure_13a(cases: Cases) -> Exhibit:
     separation = case.model.reducer.line_separation(case.speed, k)
     measured = beat(record.response.acceleration, record.response.rate)
     return Exhibit(
-        id="F13a",
         title=f"Time history of torsional vibration at {case.speed:g} rpm",
         caption=f"Tangential acceleration at {case.sensor_radius:g} m.",
         panels=(beat_panel(case, record),),
@@ -108,11 +106,10 @@ def resonance_claim(case: Case, record: SteadyRecord, speed: float, label: print
     )
 
 
-def _spectrum(figure: str, title: str, case: Case, record: SteadyRecord, top: float, *claims: Claim) -> Exhibit:
+def _spectrum(title: str, case: Case, record: SteadyRecord, top: float, *claims: Claim) -> Exhibit:
     """Show the spectrum of the sensor's signal up to `top` [Hz]."""
     values = case.in_g(record.response.acceleration)
     return Exhibit(
-        id=figure,
         title=title,
         caption=f"Tangential acceleration at {case.sensor_radius:g} m, {REVOLUTIONS} output revolutions, Hann window.",
         panels=(spectrum_panel(values, record.response.rate, unit="g", top=top),),
@@ -136,7 +133,7 @@ def figure_13b(cases: Cases) -> Exhibit:
     )
     dominant = resonance_claim(case, record, case.speed, printed.RIG_DOMINANT, 4)
     title = f"Spectrum of torsional vibration at {case.speed:g} rpm"
-    return _spectrum("F13b", title, case, record, top, several, dominant)
+    return _spectrum(title, case, record, top, several, dominant)
 
 
 def figure_13c(cases: Cases) -> Exhibit:
@@ -150,7 +147,6 @@ def figure_13c(cases: Cases) -> Exhibit:
     left, right = (abs(model.dynamics.receptance(f)) * f**2 for f in model.reducer.line_frequencies(case.speed, k))
     diagnosis = diagnose(case)
     return Exhibit(
-        id="F13c",
         title=f"Zoom spectrum at {case.speed:g} rpm",
         caption=f"Around pair k = {k} and, beside it, k = 1; tangential acceleration, Hann window.",
         panels=tuple(zoom_panel(case, record, values, k=number, unit="g") for number in sorted({k, 1}, reverse=True)),
@@ -183,7 +179,7 @@ def figure_15(cases: Cases) -> Exhibit:
     top = 1.2 * case.model.reducer.line_frequencies(speed, 3).flexspline
     claim = resonance_claim(case, record, speed, printed.RIG_FAST_DOMINANT, 2)
     title = f"Spectrum of combination harmonic resonance at {speed:g} rpm"
-    return _spectrum("F15", title, case, record, top, claim)
+    return _spectrum(title, case, record, top, claim)
 
 
 def resonance_speed(case: Case) -> float:

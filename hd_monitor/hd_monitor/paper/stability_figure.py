@@ -6,8 +6,7 @@ import numpy as np
 
 from ..model import ParametricModel, StiffnessSeries, growth_rate, scale_defects, stability_chart
 from .cases import Case, Cases
-from .claim import Claim
-from .exhibit import Exhibit, Mark, Panel, Surface
+from .exhibit import Claim, Exhibit, Mark, Panel, Surface
 
 _SEARCH_STEPS = 12
 
@@ -62,7 +61,6 @@ def stability(cases: Cases) -> Exhibit:
     rate = growth_rate(table.model, table.speed)
     limit = _stable_up_to(table.model, table.speed)
     return Exhibit(
-        id="ST",
         title="Stability chart (Strutt)",
         caption=f"Floquet growth rate with a single β11, fn = {case.model.dynamics.natural_frequency:g} Hz, ζ = "
         f"{case.model.dynamics.damping_ratio:g}; the black line is the limit of stability. Without damping the "

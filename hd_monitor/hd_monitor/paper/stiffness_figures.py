@@ -9,8 +9,7 @@ from ..model import ParametricModel, StiffnessSeries
 from ..model.static_test import StiffnessFit, fit_stiffness
 from . import printed
 from .cases import Case, Cases
-from .claim import Claim
-from .exhibit import Curve, Exhibit, Panel
+from .exhibit import Claim, Curve, Exhibit, Panel
 
 ANGLE_LABEL = "wave-generator angle (°)"
 STIFFNESS_LABEL = "torsional stiffness (N·m/rad)"
@@ -126,7 +125,6 @@ def figure_4(cases: Cases) -> Exhibit:
         ("flexspline", long.flexspline, printed.FLEXSPLINE_CYCLES),
     )
     return Exhibit(
-        id="F4",
         title="Periodic time-varying torsional stiffness",
         caption=f"z1 = {reducer.flexspline_teeth}, z2 = {reducer.circular_spline_teeth}, first harmonic of each "
         "spline.",
@@ -152,7 +150,6 @@ def figure_7(cases: Cases) -> Exhibit:
     kav, inertia, fn = printed.STATIC_MEAN_STIFFNESS, printed.INERTIA, printed.NATURAL_FREQUENCY
     implied = float(np.sqrt(kav.value / inertia.value) / (2.0 * np.pi))
     return Exhibit(
-        id="F7",
         title="Static torsional stiffness over the wave-generator position",
         caption=f"Virtual test bed, {case.static_test.torque:g} N·m, every {np.rad2deg(case.static_step):g}°, readings "
         "rounded to the instruments' steps.",

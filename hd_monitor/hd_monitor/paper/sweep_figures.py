@@ -9,8 +9,7 @@ from ..model import growth_rate
 from ..model.simulation import linear_sweep, simulate
 from . import printed
 from .cases import Case, Cases
-from .claim import Claim
-from .exhibit import Curve, Exhibit, Mark, Panel
+from .exhibit import Claim, Curve, Exhibit, Mark, Panel
 from .records import sampling_rate
 
 INSTABILITY_BAND = (103.0 / 55.0, 120.0 / 55.0)
@@ -124,13 +123,12 @@ def _bound_claim(case: Case, peak: float, bound: printed.Printed, *, above: bool
     )
 
 
-def _exhibit(figure: str, case: Case, response: SweepResponse, *claims: Claim) -> Exhibit:
+def _exhibit(case: Case, response: SweepResponse, *claims: Claim) -> Exhibit:
     betas = f"β11 = {case.model.flexspline.index:g}, β21 = {case.model.circular_spline.index:g}"
     damped = f"{betas}, ζ = {case.model.dynamics.damping_ratio:g}"
     speed = 60.0 * 2.0 * case.model.dynamics.natural_frequency / case.model.reducer.flexspline_order
     fastest = max(growth_rate(case.model, float(n)) for n in np.linspace(0.97 * speed, 1.03 * speed, 25))
     return Exhibit(
-        id=figure,
         title=f"Response envelope, {_kind(case)} time-varying stiffness",
         caption=f"{damped}, ωo2/2π swept from {case.sweep.start:g} to {case.sweep.stop:g} Hz at "
         f"{case.sweep.rate:g} Hz/s (chosen: the paper gives no rate).",
@@ -152,7 +150,7 @@ def figure_10a(cases: Cases) -> Exhibit:
     case = cases["sweep_single"]
     response = sweep_response(case)
     claim = _bound_claim(case, response.instability_peak, printed.SWEEP_SINGLE_PEAK, note=_SEED_NOTE)
-    return _exhibit("F10a", case, response, claim, _three_peaks(case, response))
+    return _exhibit(case, response, claim, _three_peaks(case, response))
 
 
 def figure_10b(cases: Cases) -> Exhibit:
@@ -166,7 +164,7 @@ def figure_10b(cases: Cases) -> Exhibit:
         ours=f"ζ 0.023 → 0.027 lowers the peak {np.log10(less_damped / peak):.1f} decades",
         passed=less_damped > 10.0 * peak,
     )
-    return _exhibit("F10b", case, response, _bound_claim(case, peak, printed.SWEEP_SINGLE_DAMPED_PEAK), sensitive)
+    return _exhibit(case, response, _bound_claim(case, peak, printed.SWEEP_SINGLE_DAMPED_PEAK), sensitive)
 
 
 def figure_11a(cases: Cases) -> Exhibit:
@@ -182,7 +180,7 @@ def figure_11a(cases: Cases) -> Exhibit:
         passed=peak > 10.0 * single,
     )
     claim = _bound_claim(case, peak, printed.SWEEP_DOUBLE_PEAK, above=True, note=note)
-    return _exhibit("F11a", case, response, claim, stronger)
+    return _exhibit(case, response, claim, stronger)
 
 
 def figure_11b(cases: Cases) -> Exhibit:
@@ -198,7 +196,7 @@ def figure_11b(cases: Cases) -> Exhibit:
         ours=f"{single:.1e} < {damped:.1e} < {double:.1e} rad",
         passed=single < damped < double,
     )
-    return _exhibit("F11b", case, response, claim)
+    return _exhibit(case, response, claim)
 
 
 def sweep_rates(cases: Cases) -> Exhibit:
@@ -219,7 +217,6 @@ def sweep_rates(cases: Cases) -> Exhibit:
     good = rates[holds]
     chosen = cases["sweep_single"].sweep.rate
     return Exhibit(
-        id="SR",
         title="Sweep rate behind figures 10 and 11",
         caption="Peak of the principal instability against the sweep rate; the paper prints bounds but no rate.",
         panels=(

@@ -1,10 +1,9 @@
-"""The claims as a table for a terminal."""
+"""The claims and results as text for a terminal."""
 
 import textwrap
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
-from .claim import Claim, Outcome
-from .exhibit import Exhibit, all_claims
+from .exhibit import Claim, Exhibit, Outcome
 
 _TAGS = {Outcome.PASS: "pass", Outcome.FAIL: "FAIL", Outcome.CONTRADICTION: "contradiction"}
 _INDENT = " " * 21
@@ -21,26 +20,27 @@ def _claim_lines(figure: str, claim: Claim, width: int) -> list[str]:
     return lines
 
 
-def claim_table(exhibits: Iterable[Exhibit], width: int = 100) -> str:
+def claim_table(exhibits: Mapping[str, Exhibit], width: int = 100) -> str:
     """List every claim with the paper's value, ours and the note, wrapped to `width` characters; then the counts."""
-    exhibits = tuple(exhibits)
-    lines = [line for shown in exhibits for claim in shown.claims for line in _claim_lines(shown.id, claim, width)]
-    return "\n".join([*lines, "", summary(all_claims(exhibits))]) if lines else ""
+    lines = [
+        line for name, shown in exhibits.items() for claim in shown.claims for line in _claim_lines(name, claim, width)
+    ]
+    return "\n".join([*lines, "", summary(exhibits.values())]) if lines else ""
 
 
-def fact_table(exhibits: Iterable[Exhibit]) -> str:
+def fact_table(exhibits: Mapping[str, Exhibit]) -> str:
     """List the results that no claim is held against, by exhibit."""
     lines = []
-    for exhibit in exhibits:
+    for name, exhibit in exhibits.items():
         if exhibit.facts:
-            lines.append(f"{exhibit.id}  {exhibit.title}")
-            lines += [f"    {name}: {value}" for name, value in exhibit.facts]
+            lines.append(f"{name}  {exhibit.title}")
+            lines += [f"    {what}: {value}" for what, value in exhibit.facts]
     return "\n".join(lines)
 
 
-def summary(claims: Iterable[Claim]) -> str:
+def summary(exhibits: Iterable[Exhibit]) -> str:
     """Say in a sentence how many claims have which outcome."""
-    outcomes = [claim.outcome for claim in claims]
+    outcomes = [claim.outcome for exhibit in exhibits for claim in exhibit.claims]
     passed, failed, contradicting = (outcomes.count(o) for o in (Outcome.PASS, Outcome.FAIL, Outcome.CONTRADICTION))
     return (
         f"{len(outcomes)} claims: {passed} pass, {contradicting} where the paper contradicts itself (convention "

@@ -4,9 +4,8 @@ import numpy as np
 
 from . import printed
 from .cases import Cases
-from .claim import Claim
 from .diagnosis import SENSOR_NOISE, diagnose
-from .exhibit import Curve, Exhibit, Panel
+from .exhibit import Claim, Curve, Exhibit, Panel
 
 _LARGEST_ERROR = 0.001  # of the mean stiffness
 
@@ -40,7 +39,6 @@ def table_1(cases: Cases) -> Exhibit:
     x, y = np.concatenate(identified, axis=1) if identified else np.empty((2, 0))
     curves.append(Curve(x=x, y=y, label="identified", style="points"))
     return Exhibit(
-        id="T1",
         title="Index values of the stiffness fluctuation",
         caption=f"Simulated at {case.speed:g} rpm, identified by the monitor from acceleration and joint angle.",
         panels=(

@@ -6,8 +6,7 @@ from functools import cache
 import pytest
 
 from hd_monitor.paper.cases import Cases, load_paper_cases
-from hd_monitor.paper.claim import Outcome
-from hd_monitor.paper.exhibit import Exhibit
+from hd_monitor.paper.exhibit import Exhibit, Outcome
 from hd_monitor.paper.reproduction import EXHIBITS
 
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from hd_monitor.model import StiffnessSeries, steady_state
-from hd_monitor.paper.claim import Outcome
+from hd_monitor.paper.exhibit import Outcome
 from hd_monitor.paper.group_figures import GROUP_2, figure_9, figure_14, group_lines, without_fluctuation
 from hd_monitor.paper.records import steady_record
 

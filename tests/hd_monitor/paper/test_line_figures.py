@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from hd_monitor.model import StiffnessSeries, steady_state
-from hd_monitor.paper.claim import Outcome
+from hd_monitor.paper.exhibit import Outcome
 from hd_monitor.paper.line_figures import equation_5, figure_8, line_distance, peak_near
 from hd_monitor.paper.records import steady_record
 

@@ -4,8 +4,7 @@ from html.parser import HTMLParser
 import numpy as np
 import pytest
 
-from hd_monitor.paper.claim import Claim
-from hd_monitor.paper.exhibit import Curve, Exhibit, Mark, Panel, Surface
+from hd_monitor.paper.exhibit import Claim, Curve, Exhibit, Mark, Panel, Surface
 
 pytest.importorskip("matplotlib")
 pytest.importorskip("jinja2")
@@ -43,7 +42,6 @@ class Reader(HTMLParser):
 
 def example(passed: bool = True) -> Exhibit:
     return Exhibit(
-        id="X1",
         title="Example <of> a figure",
         caption="Drawn & done",
         panels=(
@@ -79,14 +77,16 @@ def example(passed: bool = True) -> Exhibit:
 @pytest.fixture
 def report(tmp_path):
     folder = tmp_path / "new" / "report"
-    path = write_report([example(), example(passed=False)], folder, heading="A heading", command="hd-monitor paper")
+    path = write_report(
+        {"X1": example(), "X2": example(passed=False)}, folder, heading="A heading", command="hd-monitor paper"
+    )
     reader = Reader()
     reader.feed(path.read_text(encoding="utf-8"))
     return folder, path, reader
 
 
 def test_labels_and_scales_are_drawn():
-    axes = figure_of(example()).axes
+    axes = figure_of("X1", example()).axes
     assert [a.get_xlabel() for a in axes if a.get_xlabel()] == ["time (s)", "x", "x"]
     assert axes[0].get_yscale() == "log"
     legend = axes[0].get_legend()
@@ -118,4 +118,4 @@ def test_page_shows_claims_with_outcome_and_escapes_text(report):
 
 def test_every_exhibit_can_be_drawn(exhibit):
     for name in ("F4", "F7", "T1", "F8", "E5", "F9", "F11b", "F13a", "F14", "F16", "F17", "F18a", "F19", "F20", "ST"):
-        assert png(exhibit(name)).startswith(PNG)
+        assert png(name, exhibit(name)).startswith(PNG)

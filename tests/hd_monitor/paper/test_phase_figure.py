@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from hd_monitor.model import StiffnessSeries
-from hd_monitor.paper.claim import Outcome
+from hd_monitor.paper.exhibit import Outcome
 from hd_monitor.paper.phase_figure import figure_17, quasiperiodicity
 from hd_monitor.paper.records import steady_record
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hd_monitor.model import Dynamics, StiffnessSeries
-from hd_monitor.paper.claim import Outcome
+from hd_monitor.paper.exhibit import Outcome
 from hd_monitor.paper.property_figures import figure_16, property_curve
 from hd_monitor.paper.records import steady_record
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hd_monitor.model import StiffnessSeries
-from hd_monitor.paper.claim import Outcome
+from hd_monitor.paper.exhibit import Outcome
 from hd_monitor.paper.rig_figures import (
     beat,
     figure_13a,

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hd_monitor.paper.cases import Range
-from hd_monitor.paper.claim import Outcome
+from hd_monitor.paper.exhibit import Outcome
 from hd_monitor.paper.stability_figure import chart_panel, principal_threshold, stability
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hd_monitor.model import StiffnessSeries
-from hd_monitor.paper.claim import Outcome
+from hd_monitor.paper.exhibit import Outcome
 from hd_monitor.paper.stiffness_figures import (
     cycles_per_revolution,
     figure_4,

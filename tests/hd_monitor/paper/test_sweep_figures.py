@@ -8,7 +8,7 @@ import pytest
 from hd_monitor.model import growth_rate
 from hd_monitor.model.oscillator import Oscillator, gauss_times
 from hd_monitor.model.simulation import linear_sweep
-from hd_monitor.paper.claim import Outcome
+from hd_monitor.paper.exhibit import Outcome
 from hd_monitor.paper.sweep_figures import figure_10b, figure_11a, sweep_rates, sweep_response
 
 # Peak of |θ − M0/Kav| within 103–120 Hz for ζ = 0.023 and 0.027, from an independent integration.

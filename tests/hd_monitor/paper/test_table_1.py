@@ -6,8 +6,8 @@ import numpy as np
 
 from hd_monitor.model import StiffnessSeries
 from hd_monitor.paper import printed
-from hd_monitor.paper.claim import Outcome
 from hd_monitor.paper.diagnosis import diagnose
+from hd_monitor.paper.exhibit import Outcome
 from hd_monitor.paper.table_1 import table_1
 
 
