@@ -10,6 +10,11 @@ _BOTH_DIRECTIONS = "; ".join(
     for d in ("first", "second")
 )
 
+_CORRECT_TEETH = (
+    "the {given} given; correct reducer.flexspline_teeth and reducer.circular_spline_teeth, for with wrong ones no "
+    "part can be named"
+)
+
 SENTENCES: Mapping[LimitationCode, str] = {
     LimitationCode.NATURAL_FREQUENCY_CORRECTED: (
         "the vibration fits a natural frequency of {fitted_hz:.1f} Hz, not the {given_hz:g} Hz given: correct "
@@ -37,6 +42,14 @@ SENTENCES: Mapping[LimitationCode, str] = {
     LimitationCode.TORQUE_ABSURD: (
         "A torque of {torque_nm:.3g} N·m would wind the reducer up by {wind_up_deg:.0f}°: check the effort's unit, "
         "dynamics.inertia and dynamics.natural_frequency"
+    ),
+    LimitationCode.TEETH_CONTRADICTED: (
+        "Check the tooth numbers: lines stand at {lines} cycles per output revolution, and {other} teeth explain them "
+        f"far better than {_CORRECT_TEETH}"
+    ),
+    LimitationCode.TEETH_CONTRADICTED_VAGUELY: (
+        "Check the tooth numbers: {other} teeth, or numbers near by, explain the vibration far better than "
+        f"{_CORRECT_TEETH}"
     ),
     LimitationCode.VALUE_ON_BOUND: (
         "the fit ended on the limit of its search for {names}, so the value there is not a measurement: check the "
@@ -138,11 +151,6 @@ SENTENCES: Mapping[LimitationCode, str] = {
     LimitationCode.STRONGER_LINE_BESIDE: (
         f"The signal has a stronger line at about {{order_beside:.0f}} than at {_BOTH_LINES}: check "
         "reducer.flexspline_teeth and reducer.circular_spline_teeth"
-    ),
-    LimitationCode.LINES_OF_OTHER_TEETH: (
-        f"Check the tooth numbers: lines stand at {_BOTH_LINES}, where {{order:g}}/{{next_order:g}} teeth have them "
-        "but the {given_order:g}/{given_next_order:g} given do not both; correct reducer.flexspline_teeth and "
-        "reducer.circular_spline_teeth, for with wrong ones no part can be named"
     ),
     LimitationCode.OTHER: "{text}",
 }

@@ -17,6 +17,8 @@ class LimitationCode(StrEnum):
     TORQUE_TOO_SMALL = "torque_too_small"
     TORQUE_TOO_LARGE = "torque_too_large"
     TORQUE_ABSURD = "torque_absurd"
+    TEETH_CONTRADICTED = "teeth_contradicted"
+    TEETH_CONTRADICTED_VAGUELY = "teeth_contradicted_vaguely"
     VALUE_ON_BOUND = "value_on_bound"
     # What the input says cannot be
     VELOCITY_ZERO = "velocity_zero"
@@ -49,7 +51,6 @@ class LimitationCode(StrEnum):
     LINES_TOO_SIMILAR = "lines_too_similar"
     DIRECTIONS_DISAGREE = "directions_disagree"
     STRONGER_LINE_BESIDE = "stronger_line_beside"
-    LINES_OF_OTHER_TEETH = "lines_of_other_teeth"
     # Transitional
     OTHER = "other"
 

@@ -10,11 +10,12 @@ import yaml
 from .. import __version__
 from ..acquisition.quality import Quality
 from ..diagnosis.limitations import describe_limitation
-from ..identification.teeth.ranking import ToothPair, ToothPairRanking
+from ..diagnosis.tooth_ranking import describe_ranking
+from ..identification.teeth.candidates import ToothPair
+from ..identification.teeth.ranking import ToothPairRanking
 from . import identify_numbers as numbers
 from .identify import JointIdentification
 from .identify_numbers import Estimate, Harmonic
-from .identify_teeth import is_certain
 from .parameters import NODE
 from .result import line_entries, plain
 
@@ -115,7 +116,7 @@ def refined(joint: JointIdentification) -> dict[str, Any]:
     """Parameters of a joint that the recordings tell better than what was given."""
     found, settings, values = joint.found, joint.settings, dict[str, Any]()
     assert found is not None
-    if joint.teeth is not None and is_certain(joint.teeth):
+    if joint.teeth is not None and joint.teeth.conclusive:
         values["reducer"] = _teeth_entry(joint.teeth.ranked[0].teeth)
     if settings.sensorless or found.blockers or teeth_contradict(joint):
         return values
@@ -126,7 +127,7 @@ def refined(joint: JointIdentification) -> dict[str, Any]:
 
 def teeth_contradict(joint: JointIdentification) -> bool:
     """Whether the recordings show other teeth than the parameters give: what was identified with these is void."""
-    if joint.teeth is None or not is_certain(joint.teeth):
+    if joint.teeth is None or not joint.teeth.conclusive:
         return False
     reducer, best = joint.settings.reducer, joint.teeth.ranked[0].teeth
     return (best.flexspline, best.circular_spline) != (reducer.flexspline_teeth, reducer.circular_spline_teeth)
@@ -158,8 +159,8 @@ def _teeth(ranking: ToothPairRanking | None) -> dict[str, Any] | None:
     if ranking is None:
         return None
     return {
-        "statement": ranking.statement,
-        "conclusive": is_certain(ranking),
+        "statement": describe_ranking(ranking),
+        "conclusive": ranking.conclusive,
         "margin": ranking.margin,
         "travel_deg": math.degrees(ranking.travel),
         "ranked": [

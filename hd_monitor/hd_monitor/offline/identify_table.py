@@ -4,12 +4,12 @@ import math
 from collections.abc import Iterator
 
 from ..diagnosis.limitations import describe_limitation
+from ..diagnosis.tooth_ranking import describe_ranking
 from ..identification.result import Identification
 from . import identify_numbers as numbers
 from .identify import JointIdentification
 from .identify_numbers import Estimate
 from .identify_result import SHOWN, quality_sums, teeth_contradict
-from .identify_teeth import is_certain
 from .summary import faults_in_words
 
 _SPLINES = ("circular spline", "flexspline")
@@ -30,8 +30,9 @@ def _head(joint: JointIdentification, found: Identification) -> Iterator[str]:
     if teeth_contradict(joint):
         given = joint.settings.reducer
         yield (
-            f"  WRONG TEETH? {joint.teeth.statement if joint.teeth else ''}; given are {given.flexspline_teeth}/"
-            f"{given.circular_spline_teeth}, so nothing below holds: correct reducer.* and identify again"
+            f"  WRONG TEETH? {describe_ranking(joint.teeth) if joint.teeth else ''}; "
+            f"given are {given.flexspline_teeth}/{given.circular_spline_teeth}, so nothing below holds: "
+            "correct reducer.* and identify again"
         )
     for blocker in found.blockers:
         yield f"  no part can be named: {describe_limitation(blocker)}"
@@ -112,10 +113,8 @@ def _teeth(joint: JointIdentification) -> Iterator[str]:
     ranking = joint.teeth
     if ranking is None:
         return
-    reducer = joint.settings.reducer
-    yield f"  tooth check ({reducer.flexspline_teeth}/{reducer.circular_spline_teeth} given): {ranking.statement}"
-    if ranking.conclusive and not is_certain(ranking):
-        yield "    only one of that pair's two lines stands out, and it fits another pair too: not conclusive"
+    given = joint.settings.reducer
+    yield f"  tooth check ({given.flexspline_teeth}/{given.circular_spline_teeth} given): {describe_ranking(ranking)}"
     best = ranking.ranked[0].log_evidence
     for pair in ranking.ranked[:SHOWN]:
         if math.isfinite(pair.log_evidence):

@@ -1,14 +1,22 @@
 """Tooth check: do the teeth given fit the recording, and if not, which do?"""
 
 import math
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from ..acquisition.record import JointSamples, Record
 from ..assessment import Assessment
-from ..identification.teeth.ranking import ToothPairRanking, rank_tooth_pairs
-from ..orders.joint_segment import samples_of_records
+from ..errors import ParameterError
+from ..identification.teeth.candidates import Candidate, ToothPair, every_pair
+from ..identification.teeth.ranking import ToothPairRanking, rank
+from ..orders.joint_segment import JointSegmentCutter, one_speed, samples_of_records
+from ..orders.line_orders import LineOrders
+from ..orders.regression import Products, solve
+from ..orders.scan import OrderScan
+from ..reducer import WAVE_GENERATOR_LOBES
 from ..settings import JointSettings
 
 LONGEST = 600.0
@@ -17,9 +25,68 @@ LONGEST = 600.0
 _APART = 10.0  # s between recordings laid end to end: no stroke goes on from one to the next
 
 
-def is_certain(ranking: ToothPairRanking | None) -> bool:
-    """Whether the first pair may replace what was given: both its lines must be found, since one fits two pairs."""
-    return ranking is not None and ranking.conclusive and ranking.ranked[0].lines_found == 2
+def rank_tooth_pairs(
+    data: JointSamples | Iterable[Record],
+    *,
+    source: str = "joint_effort",
+    candidates: Iterable[tuple[int, int]] | None = None,
+    minimum_speed: float = 0.03,
+) -> ToothPairRanking:
+    """Rank tooth pairs by the evidence for their lines in a recording.
+
+    Parameters
+    ----------
+    data : JointSamples or iterable of Record
+        Joint states, or accelerations with the joint's angle.
+    source : str
+        For joint states: ``'joint_effort'`` or ``'joint_velocity'``, the field that is the vibration signal.
+    candidates : iterable of (int, int), optional
+        Flexspline and circular-spline teeth; by default every pair of `TOOTH_RANGE` with two teeth of difference.
+    minimum_speed : float
+        Output speed [rad/s] below which the joint counts as standing.
+
+    Raises
+    ------
+    ParameterError
+        If there are no candidates, or one of them does not differ by two teeth.
+
+    Notes
+    -----
+    The orders per output revolution are the tooth numbers themselves in both mounts, so the ranking cannot tell the
+    mount. Pairs that share a line, as 198/200 and 200/202 do, are distinguished only if both lines stand out.
+    """
+    pairs = [ToothPair(*pair) for pair in candidates] if candidates is not None else every_pair()
+    if not pairs:
+        raise ParameterError("there is no candidate tooth pair to look for; leave `candidates` out for all of them")
+    for pair in pairs:
+        if pair.circular_spline - pair.flexspline != WAVE_GENERATOR_LOBES:
+            raise ParameterError(f"{pair.flexspline}/{pair.circular_spline} teeth do not differ by 2: not looked for")
+    lowest = min(LineOrders.of_pair(pair.lines(0.5)).reference_orders.min() for pair in pairs)
+    orders = np.arange(
+        max(math.floor(lowest), 2),
+        math.ceil(max(LineOrders.of_pair(pair.lines()).reference_orders.max() for pair in pairs)) + 1,
+    )
+    if isinstance(data, JointSamples):
+        samples = data
+    else:
+        samples, source = samples_of_records(data), "joint_effort"
+    span = float(min(pair.flexspline for pair in pairs)), float(max(pair.circular_spline for pair in pairs))
+    cutter = JointSegmentCutter(source, span, minimum_speed)
+    segments = cutter.add(samples) + cutter.finish()
+    scan = OrderScan(segments, orders)
+    travel = float(np.ptp(np.concatenate([segment.angle for segment in segments]))) if segments else 0.0
+    multiples = [(0.5, *range(2, int(orders[-1] // pair.circular_spline) + 1)) for pair in pairs]
+    wanted = [Candidate(teeth=pair, further=more) for pair, more in zip(pairs, multiples, strict=True)]
+
+    def ranked(parts: Sequence[Products]) -> ToothPairRanking:
+        return rank(wanted, [partial(solve, part) for part in parts], travel=travel, speed=one_speed(segments))
+
+    rankings = [ranked(scan.by_direction())]
+    if not rankings[0].conclusive and any(found.lines_found for found in rankings[0].ranked):
+        # Amplitudes and phases that change with the speed, as near a resonance, do not add up over segments.
+        parts = scan.by_parts()
+        rankings += [ranked(parts)] if parts else []
+    return max(rankings, key=lambda ranking: (ranking.conclusive, ranking.ranked[0].log_evidence))
 
 
 class ToothCheck:

@@ -1,5 +1,6 @@
 """Spectrum of a vibration over orders, cycles per output revolution, summed up cheaply as the joint turns."""
 
+import functools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -7,12 +8,13 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy import fft
 
-from ..arrays import FloatArray
+from ..arrays import ComplexArray, FloatArray
 from ..identification.segment.segment import Segment
 from ..identification.segment.torque import own_acceleration
 from ..model.parameters import Dynamics
+from .line_orders import LineOrders
 from .orthonormal import orthonormal
-from .regression import Products
+from .regression import LineFit, Products, solve
 
 TURNS = 2
 """Output revolutions after which the sums start over: half orders, where no line can be, tell lines from tones."""
@@ -81,7 +83,7 @@ class OrderSpectrum:
             Whole multiples of 1 / `TURNS`.
         """
         place = np.rint(orders * TURNS).astype(np.intp)
-        weight, signal = np.fft.fft(self.counts).conj(), np.fft.fft(self.sums).conj()  # sums of exp(+i order angle)
+        weight, signal = self._transforms
         size = weight.size
         apart, together = weight[np.subtract.outer(place, place) % size], weight[np.add.outer(place, place) % size]
         cosines, sines = 0.5 * (apart + together).real, 0.5 * (apart - together).real
@@ -91,6 +93,18 @@ class OrderSpectrum:
         lines = np.block([[cosines, mixed], [mixed.T, sines]])
         matrix = np.block([[lines, column[:, None]], [column[None, :], np.array([[self.power]])]])
         return Products(orders=orders, matrix=matrix, rows=int(self.counts.sum()))
+
+    def solve(self, orders: LineOrders) -> LineFit | None:
+        """Fit lines at whole multiples of 1 / `TURNS`; None if one is too high, or not determined by the travel."""
+        every = orders.every
+        if max(orders.lines) > HIGHEST_ORDER:
+            return None
+        return solve(self.products(every[every <= HIGHEST_ORDER]), orders)
+
+    @functools.cached_property
+    def _transforms(self) -> tuple[ComplexArray, ComplexArray]:
+        """Sums of exp(+i order angle) over the samples, and over the signal."""
+        return np.fft.fft(self.counts).conj(), np.fft.fft(self.sums).conj()
 
 
 def with_segment(

@@ -17,10 +17,6 @@ AGREEMENT = 0.9
 """Confidence that each direction alone must have in the spline that is named."""
 
 
-BETTER_TEETH = math.log(1e4)
-"""Difference of log evidence, odds of 10 000 to 1, by which other teeth must lead; several are compared."""
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DirectionEvidence:
     """The first line pair in one direction of motion, or in one part of the time if there is one direction only.
@@ -92,28 +88,6 @@ def pooled_dominance(directions: Sequence[DirectionEvidence]) -> LinePair:
     each = np.array([direction.dominance for direction in directions])
     deviates = norm.ppf(np.clip(each, 1e-12, 1.0 - 1e-12))
     return LinePair(*norm.cdf(deviates.sum(axis=0) / np.sqrt(len(directions))).tolist())
-
-
-def other_teeth(lead: float, pair: LinePair, chances: Sequence[LinePair], given: LinePair) -> tuple[Limitation, ...]:
-    """Limit a result if other tooth numbers fit better; only both of their lines are evidence, one fits two pairs.
-
-    Parameters
-    ----------
-    lead : float
-        Log evidence of the other teeth less that of those given, summed over the directions.
-    pair : LinePair
-        Orders of the other teeth's lines [cycles per output revolution].
-    chances : sequence of LinePair
-        Probability, by direction, of noise alone making each of them.
-    given : LinePair
-        Orders of the lines of the teeth given.
-    """
-    both = all(min(chance) < CHANCE for chance in zip(*chances, strict=True))
-    if lead < BETTER_TEETH or not both:
-        return ()
-    orders = {"order": pair.circular_spline, "next_order": pair.flexspline}
-    own = {"given_order": given.circular_spline, "given_next_order": given.flexspline}
-    return (blocker(LimitationCode.LINES_OF_OTHER_TEETH, **orders, **own),)
 
 
 def disagreements(

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator, Sequence
+from functools import partial
 
 import numpy as np
 
@@ -9,17 +10,19 @@ from ...acquisition.record import JointSamples
 from ...arrays import FloatArray
 from ...orders.joint_segment import JointSegment, JointSegmentCutter, one_speed
 from ...orders.line_orders import LineOrders
-from ...orders.regression import LineFit
+from ...orders.regression import LineFit, solve
 from ...reducer import LinePair
 from ...settings import JointSettings
 from ..limitation import Limitation, LimitationCode, blocker
 from ..result import Identification, LineEstimate
-from .agreement import DirectionEvidence, disagreements, other_teeth
+from ..teeth.candidates import ToothPair, surroundings, with_neighbours
+from ..teeth.ranking import rank
+from .agreement import DirectionEvidence, disagreements
 from .limitations import blockers_of_input, doubts_of_result
 from .pooling import SegmentPool
 
-NEIGHBOURS = (-4, -3, -2, -1, 1, 2, 3, 4)
-"""Differences of other tooth numbers that are watched from those given."""
+BETTER_TEETH = math.log(1e4)
+"""Difference of log evidence, odds of 10 000 to 1, by which other teeth must lead; several are compared."""
 
 
 class SensorlessIdentifier:
@@ -60,12 +63,11 @@ class SensorlessIdentifier:
         reduction, (cs, fs) = settings.reducer.reduction, settings.reducer.output_orders
         motor = (reduction, 2.0 * reduction)
         orders = [LineOrders.of_pair(LinePair(cs, fs), k, motor) for k in range(1, settings.analysis.harmonics + 1)]
-        # Teeth near those given share a line with them, or lie where travel does not separate them.
-        self._neighbours = [LinePair(cs + shift, fs + shift) for shift in NEIGHBOURS]
-        orders += [LineOrders.of_pair(pair, 1, motor) for pair in self._neighbours]
+        self._candidates = with_neighbours(settings.reducer)
+        self._around = surroundings(self._candidates, motor)
         minimum_speed = settings.analysis.minimum_speed * 2.0 * np.pi / 60.0 / reduction
         self._cutter = JointSegmentCutter(settings.input.source, (cs, fs), minimum_speed)
-        self._pool = SegmentPool(orders, settings.analysis.memory)
+        self._pool = SegmentPool([*orders, self._around], settings.analysis.memory)
         self._messages = 0
         self._usable = 0
         self._latest: Identification | None = None
@@ -140,7 +142,7 @@ class SensorlessIdentifier:
             misfit=float(np.mean([fit.floor for fit in fits])),
             limitations=(
                 *doubts_of_result(index, reducer, one_speed=one_speed(self._pool.segments), too_fast=self._too_fast),
-                *self._other_teeth(fits),
+                *self._other_teeth(),
                 *disagreements(self._directions, reducer.output_orders, settings.diagnosis.confidence),
             ),
             load_fluctuation=math.nan,
@@ -155,19 +157,15 @@ class SensorlessIdentifier:
                 std = np.sqrt(np.diag(covariance))
                 yield LineEstimate(k=number + 1, amplitude=LinePair(*mean.tolist()), std=LinePair(*std.tolist()))
 
-    def _other_teeth(self, own: Sequence[LineFit]) -> tuple[Limitation, ...]:
+    def _other_teeth(self) -> tuple[Limitation, ...]:
         """Limit the result if tooth numbers near those given fit better."""
-        given = sum(fit.log_evidence for fit in own)
-        rivals = []
-        for number, pair in enumerate(self._neighbours, start=self._settings.analysis.harmonics):
-            fits = [group.fit for group in self._pool.fits(number)]
-            if len(fits) == len(own):
-                rivals.append((sum(fit.log_evidence for fit in fits) - given, pair, fits))
-        if not rivals:
-            return ()
-        lead, pair, fits = max(rivals, key=lambda rival: rival[0])
-        chances = [LinePair(*fit.chances.tolist()) for fit in fits]
-        return other_teeth(lead, pair, chances, self._settings.reducer.output_orders)
+        groups = self._pool.groups(self._settings.analysis.harmonics)
+        parts = [partial(solve, products) for _, _, products in groups]
+        ranking = rank(self._candidates, parts)
+        given = self._settings.reducer
+        # Only both lines are evidence: one of them fits two pairs
+        better = ranking.lead(ToothPair.of(given)) >= BETTER_TEETH and ranking.ranked[0].lines_found == 2
+        return (ranking.contradiction(given),) if better else ()
 
     @property
     def _too_fast(self) -> float:

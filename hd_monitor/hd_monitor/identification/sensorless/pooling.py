@@ -80,13 +80,18 @@ class SegmentPool:
 
     def fits(self, number: int) -> list[GroupFit]:
         """Fit the lines of one set of orders, by its number, to every group of segments that determines them."""
-        fitted = []
+        return [
+            GroupFit(name, segments, fit)
+            for name, segments, products in self.groups(number)
+            if (fit := solve(products, self._orders[number])) is not None
+        ]
+
+    def groups(self, number: int) -> Iterator[tuple[str, tuple[JointSegment, ...], Products]]:
+        """Yield name, segments and products of every group, for one set of orders by its number."""
         for name, group in self._groups():
             total = pool(products for pooled in group if (products := pooled.products[number]) is not None)
-            fit = solve(total, self._orders[number]) if total is not None else None
-            if fit is not None:
-                fitted.append(GroupFit(name, tuple(pooled.segment for pooled in group), fit))
-        return fitted
+            if total is not None:
+                yield name, tuple(pooled.segment for pooled in group), total
 
     def _groups(self) -> Iterator[tuple[str, list[_Pooled]]]:
         """Segments that are pooled coherently: by direction, or by time if there is one direction only."""

@@ -1,35 +1,37 @@
-"""Which tooth numbers fit a recording: candidate pairs ranked by the evidence for their lines."""
+"""Which tooth numbers fit: candidate pairs ranked by the evidence for their lines."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from enum import StrEnum
 
 import numpy as np
 
-from ...acquisition.record import JointSamples, Record
-from ...errors import ParameterError
-from ...orders.joint_segment import JointSegment, JointSegmentCutter, one_speed, samples_of_records
 from ...orders.line_orders import LineOrders
-from ...orders.regression import CHANCE, Products, solve
-from ...orders.scan import OrderScan
-from ...reducer import WAVE_GENERATOR_LOBES, LinePair
-
-TOOTH_RANGE = (60, 320)
-"""Flexspline teeth looked at: reductions 30 to 160, as catalogues have them."""
+from ...orders.regression import CHANCE, LineFit
+from ...reducer import Reducer
+from ..limitation import Limitation, LimitationCode, blocker
+from .candidates import Candidate, ToothPair
 
 MARGIN = math.log(1000.0)
 """Difference of log evidence, odds of 1000 to 1, by which the best pair must lead."""
 
-ENCODER_ORDERS = (64, 128, 256, 512)
-"""Periods per revolution of common encoders, whose interpolation errors show as lines, with sidebands beside."""
+CERTAIN = 1e-6
+"""Probability of noise making a line as large, below which it counts where many pairs are looked at."""
+
+FitLines = Callable[[LineOrders], LineFit | None]
+"""Fits lines with their reference orders to one part of the data; None where it does not determine them."""
 
 
-class ToothPair(NamedTuple):
-    """Teeth of the flexspline, z1, and of the circular spline, z2."""
+class Ambiguity(StrEnum):
+    """Why a ranking is not conclusive."""
 
-    flexspline: int
-    circular_spline: int
+    NO_MOTION = "no_motion"
+    NO_LINES = "no_lines"
+    SECOND_PAIR = "second_pair"
+    SINGLE_LINE = "single_line"
+    ONE_SPEED = "one_speed"
+    ENCODER = "encoder"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -40,18 +42,24 @@ class ToothPairEvidence:
     ----------
     teeth : ToothPair
     log_evidence : float
-        Logarithm of the likelihood ratio against noise alone, less a penalty for the number of lines (BIC); the lines
-        at multiples of the pair and at the motor's orders that follow from it count in.
+        Logarithm of the likelihood ratio against noise alone, less a penalty for the number of lines (BIC), summed
+        over the pairs of lines that count; -inf if the data do not determine any.
     chance : float
-        Probability that noise alone makes the more significant one of the pair's two first lines.
+        Probability that noise alone makes the most significant line.
     lines_found : int
-        How many of the two first lines stand out of the noise in at least one direction.
+        How many lines of a pair stand out of the noise in at least one part of the data, at most.
+    pairs_found : int
+        Of how many pairs of lines at least one does.
+    lines : tuple of float
+        Orders [cycles per output revolution] of all that do.
     """
 
     teeth: ToothPair
     log_evidence: float
     chance: float
     lines_found: int
+    pairs_found: int
+    lines: tuple[float, ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -61,189 +69,155 @@ class ToothPairRanking:
     Attributes
     ----------
     ranked : tuple of ToothPairEvidence
-    margin : float
-        Difference of the log evidence of the first two.
     as_pair : float
         Log odds of the first pair's two lines against a single line: near 0 if only one stands out, or if the travel
         does not part them.
-    conclusive : bool
-        True if both of the first pair's lines stand out, as two and not one, and it leads by odds of at least 1000 to
-        1, over motion at more than one speed, and it is not where an encoder's errors lie.
-    statement : str
-        One sentence for a technician.
     travel : float
         Range of the output angle covered [rad].
+    speed : float
+        Output speed [rad/s] if there was only one; NaN if it varied.
     """
 
     ranked: tuple[ToothPairEvidence, ...]
-    margin: float
     as_pair: float
-    conclusive: bool
-    statement: str
     travel: float
+    speed: float
+
+    @property
+    def margin(self) -> float:
+        """Difference of the log evidence of the first two."""
+        return self.ranked[0].log_evidence - self.ranked[1].log_evidence if len(self.ranked) > 1 else math.inf
+
+    @property
+    def stands_as_pair(self) -> bool:
+        """Whether two lines of the first pair stand out, as two and not one."""
+        return self.ranked[0].lines_found == 2 and self.as_pair >= MARGIN
+
+    @property
+    def ambiguity(self) -> Ambiguity | None:
+        """Why the ranking is not conclusive; None if it is.
+
+        It is if both of the first pair's lines stand out, as two and not one, and it leads by odds of at least 1000
+        to 1, over motion at more than one speed, and it is not where an encoder's errors lie.
+        """
+        best = self.ranked[0]
+        if not math.isfinite(best.log_evidence):
+            return Ambiguity.NO_MOTION
+        if not best.lines_found:
+            return Ambiguity.NO_LINES
+        if self.margin < MARGIN:
+            return Ambiguity.SECOND_PAIR
+        if not self.stands_as_pair:
+            return Ambiguity.SINGLE_LINE
+        if math.isfinite(self.speed):
+            return Ambiguity.ONE_SPEED
+        return Ambiguity.ENCODER if best.teeth.is_beside_encoder else None
+
+    @property
+    def conclusive(self) -> bool:
+        """Whether the first pair is the right one beyond reasonable doubt."""
+        return self.ambiguity is None
+
+    def lead(self, given: ToothPair) -> float:
+        """Log evidence of the first pair less that of the one given, which must be among them."""
+        own = self._log_evidence(given)
+        return self.ranked[0].log_evidence - own if math.isfinite(own) else 0.0
+
+    def contenders(self, given: ToothPair, margin: float) -> list[ToothPair]:
+        """Return the others whose log evidence is at most `margin` below that of the one given."""
+        least = self._log_evidence(given) - margin
+        return [found.teeth for found in self.ranked if found.teeth != given and found.log_evidence >= least]
+
+    def _log_evidence(self, teeth: ToothPair) -> float:
+        return next(found.log_evidence for found in self.ranked if found.teeth == teeth)
+
+    def contradiction(self, given: Reducer) -> Limitation:
+        """Return why no part may be named with the teeth given, where the first pair is to be believed instead."""
+        best = self.ranked[0]
+        return contradiction(given, best.teeth, best.lines if self.margin >= MARGIN else ())
 
 
-def rank_tooth_pairs(
-    data: JointSamples | Iterable[Record],
-    *,
-    source: str = "joint_effort",
-    candidates: Iterable[tuple[int, int]] | None = None,
-    minimum_speed: float = 0.03,
+def contradiction(given: Reducer, other: ToothPair, lines: Sequence[float] = ()) -> Limitation:
+    """Return why no part may be named: other teeth fit, by `lines` of theirs, or some near these if there are none."""
+    code = LimitationCode.TEETH_CONTRADICTED if lines else LimitationCode.TEETH_CONTRADICTED_VAGUELY
+    return blocker(
+        code,
+        given=f"{given.flexspline_teeth}/{given.circular_spline_teeth}",
+        other=f"{other.flexspline:g}/{other.circular_spline:g}",
+        lines=", ".join(f"{line:g}" for line in lines),
+    )
+
+
+def rank(
+    candidates: Sequence[Candidate], parts: Sequence[FitLines], *, travel: float = math.nan, speed: float = math.nan
 ) -> ToothPairRanking:
-    """Rank candidate tooth pairs by the evidence for their lines in a recording.
+    """Rank candidates by the evidence for their lines, summed over parts of the data.
 
     Parameters
     ----------
-    data : JointSamples or iterable of Record
-        Joint states, or accelerations with the joint's angle.
-    source : str
-        For joint states: ``'joint_effort'`` or ``'joint_velocity'``, the field that is the vibration signal.
-    candidates : iterable of (int, int), optional
-        Flexspline and circular-spline teeth; by default every pair of `TOOTH_RANGE` with two teeth of difference.
-    minimum_speed : float
-        Output speed [rad/s] below which the joint counts as standing.
-
-    Returns
-    -------
-    ToothPairRanking
-
-    Raises
-    ------
-    ParameterError
-        If there are no candidates, or one of them does not differ by two teeth.
-
-    Notes
-    -----
-    The orders per output revolution are the tooth numbers themselves in both mounts, so the ranking cannot tell the
-    mount. Pairs that share a line, as 198/200 and 200/202 do, are told apart only if both lines stand out.
+    candidates : sequence of Candidate
+    parts : sequence of callable
+        Fit lines to parts of the data that do not add up coherently, directions of motion for example.
+    travel : float
+        Range of the output angle [rad].
+    speed : float
+        Output speed [rad/s] if there was only one; NaN if it varied.
     """
-    pairs = [ToothPair(*pair) for pair in candidates] if candidates is not None else default_candidates()
-    if not pairs:
-        raise ParameterError("there is no candidate tooth pair to look for; leave `candidates` out for all of them")
-    for pair in pairs:
-        if pair.circular_spline - pair.flexspline != WAVE_GENERATOR_LOBES:
-            raise ParameterError(f"{pair.flexspline}/{pair.circular_spline} teeth do not differ by 2: not looked for")
-    wanted = {order for pair in pairs for order in _surroundings(pair)}
-    orders = np.arange(max(min(wanted), 2), max(wanted) + 1)
-    if isinstance(data, JointSamples):
-        samples = data
-    else:
-        samples, source = samples_of_records(data), "joint_effort"
-    span = float(min(pair.flexspline for pair in pairs)), float(max(pair.circular_spline for pair in pairs))
-    cutter = JointSegmentCutter(source, span, minimum_speed)
-    segments = cutter.add(samples) + cutter.finish()
-    scan = OrderScan(segments, orders)
-    rankings = [_rank(pairs, scan, scan.by_direction(), segments)]
-    if not rankings[0].conclusive and any(found.lines_found for found in rankings[0].ranked):
-        # Amplitudes and phases that change with the speed, as near a resonance, do not add up over segments.
-        parts = scan.by_parts()
-        rankings += [_rank(pairs, scan, parts, segments)] if parts else []
-    return max(rankings, key=lambda ranking: (ranking.conclusive, ranking.ranked[0].log_evidence))
-
-
-def _rank(
-    pairs: Sequence[ToothPair], scan: OrderScan, parts: Sequence[Products], segments: Sequence[JointSegment]
-) -> ToothPairRanking:
-    """Rank with the segments pooled in these parts."""
-    ranked = sorted(
-        (_evidence(pair, scan, parts) for pair in pairs), key=lambda found: (-found.log_evidence, found.teeth)
-    )
-    travel = float(np.ptp(np.concatenate([segment.angle for segment in segments]))) if segments else 0.0
-    margin = ranked[0].log_evidence - ranked[1].log_evidence if len(ranked) > 1 else math.inf
+    found = {candidate.teeth: _evidence(candidate, parts) for candidate in candidates}
+    ranked = sorted(found.values(), key=lambda evidence: (-evidence.log_evidence, evidence.teeth))
     best = ranked[0]
-    speed = one_speed(segments)
-    as_pair = _odds_as_pair(best.teeth, scan, parts) if best.lines_found else 0.0
-    clear = best.lines_found == 2 and min(margin, as_pair) >= MARGIN
     return ToothPairRanking(
         ranked=tuple(ranked),
-        margin=margin,
-        as_pair=as_pair,
-        conclusive=clear and not math.isfinite(speed) and not _beside_encoder(best.teeth),
-        statement=_statement(ranked, margin, as_pair, travel, speed),
+        as_pair=_odds_as_pair(LineOrders.of_pair(best.teeth.lines()), parts) if best.lines_found else 0.0,
         travel=travel,
+        speed=speed,
     )
 
 
-def default_candidates() -> list[ToothPair]:
-    """Every pair with two teeth of difference whose reduction catalogues have."""
-    return [ToothPair(teeth, teeth + 2) for teeth in range(TOOTH_RANGE[0], TOOTH_RANGE[1] + 1)]
+def _evidence(candidate: Candidate, parts: Sequence[FitLines]) -> ToothPairEvidence:
+    """Sum the evidence for a candidate's lines over parts and multiples."""
+    total, chances, found, determined = 0.0, {}, {}, {}
+    for k in candidate.multiples:
+        fits = _fits(candidate.teeth, k, parts)
+        if not fits:
+            continue
+        determined[k] = sum(fit.log_evidence for fit in fits)
+        chance = np.minimum(np.min([fit.chances for fit in fits], axis=0) * 2 * len(fits), 1.0)
+        chances[k] = float(chance.min())
+        found[k] = [order for order, own in zip(candidate.teeth.lines(k), chance, strict=True) if own < CHANCE]
+    if any(found.values()):
+        total = sum(fit.log_evidence for k in candidate.further for fit in _fits(candidate.teeth, k, parts))
+    return ToothPairEvidence(
+        teeth=candidate.teeth,
+        log_evidence=total + sum(determined.values()) if determined else -math.inf,
+        chance=min(chances.values(), default=1.0),
+        lines_found=max(map(len, found.values()), default=0),
+        pairs_found=sum(map(bool, found.values())),
+        lines=tuple(order for lines in found.values() for order in lines),
+    )
 
 
-def _lines(pair: ToothPair, k: float) -> LinePair:
-    """Orders [cycles per output revolution] of the k-th pair of lines; k = 1/2 are the motor's, in either mount."""
-    return LinePair(k * pair.flexspline, k * pair.circular_spline)
+def _fits(teeth: ToothPair, k: float, parts: Sequence[FitLines]) -> list[LineFit]:
+    """The k-th pair of lines, fitted to every part that determines it."""
+    orders = LineOrders.of_pair(teeth.lines(k))
+    return [fit for part in parts if (fit := part(orders)) is not None]
 
 
-def _surroundings(pair: ToothPair) -> tuple[int, int]:
-    """Lowest and highest order that the fit of a pair looks at."""
-    lowest = LineOrders.of_pair(_lines(pair, 0.5)).reference_orders.min()
-    return math.floor(lowest), math.ceil(LineOrders.of_pair(_lines(pair, 1.0)).reference_orders.max())
-
-
-def _evidence(pair: ToothPair, scan: OrderScan, parts: Sequence[Products]) -> ToothPairEvidence:
-    """Sum the evidence for a pair's lines over parts and, once it shows itself, over its multiples in the range."""
-    fits = [fit for part in parts if (fit := solve(part, _around(_lines(pair, 1.0)))) is not None]
-    if not fits:
-        return ToothPairEvidence(teeth=pair, log_evidence=-math.inf, chance=1.0, lines_found=0)
-    chances = np.minimum(np.min([fit.chances for fit in fits], axis=0) * 2 * len(fits), 1.0)
-    found = int(np.count_nonzero(chances < CHANCE))
-    total = sum(fit.log_evidence for fit in fits)
-    multiples = [0.5, *range(2, scan.highest // pair.circular_spline + 1)] if found else []
-    for k in multiples:
-        more = (solve(part, _around(_lines(pair, k))) for part in parts)
-        total += sum(fit.log_evidence for fit in more if fit is not None)
-    return ToothPairEvidence(teeth=pair, log_evidence=total, chance=float(chances.min()), lines_found=found)
-
-
-def _odds_as_pair(pair: ToothPair, scan: OrderScan, parts: Sequence[Products]) -> float:
+def _odds_as_pair(pair: LineOrders, parts: Sequence[FitLines]) -> float:
     """Logarithm of the odds for two lines against a single one, at either place or between: what travel must part."""
-    single = np.zeros(len(_between(pair)))
-    both = 0.0
-    for part in parts:
-        fit = solve(part, _around(_lines(pair, 1.0)))
-        both += fit.log_evidence if fit is not None else 0.0
-        for number, order in enumerate(_between(pair)):
-            alone = solve(part, _around(_lines(pair, 1.0), only=order))
-            single[number] += alone.log_evidence if alone is not None else 0.0
-    return both - max(float(single.max()), 0.0)
+    lower, upper = pair.lines
+    single = [replace(pair, lines=np.array([order])) for order in np.arange(lower, upper + 1.0)]
+    both, *alone = (
+        sum(fit.log_evidence for part in parts if (fit := part(orders)) is not None) for orders in (pair, *single)
+    )
+    return both - max(0.0, *alone)
 
 
-def _between(pair: ToothPair) -> range:
-    """Orders of single lines that a pair could be mistaken for."""
-    return range(pair.flexspline, pair.circular_spline + 1)
-
-
-def _around(lines: LinePair, only: float | None = None) -> LineOrders:
-    """The pair with its reference orders, or a single line in its place."""
-    orders = LineOrders.of_pair(lines)
-    return orders if only is None else replace(orders, lines=np.array([float(only)]))
-
-
-def _beside_encoder(pair: ToothPair) -> bool:
-    """Whether a pair's lines lie where an encoder's own errors would."""
-    return any(pair.flexspline - 1 <= order <= pair.circular_spline + 1 for order in ENCODER_ORDERS)
-
-
-def _statement(ranked: Sequence[ToothPairEvidence], margin: float, as_pair: float, travel: float, speed: float) -> str:
-    """Say what the ranking is worth."""
-    best = ranked[0]
-    name = f"{best.teeth.flexspline}/{best.teeth.circular_spline}"
-    if not math.isfinite(best.log_evidence):
-        return "No motion in which lines could show: let the joint turn faster, or publish its states at a higher rate"
-    if not best.lines_found:
-        return f"No tooth pair's lines stand out of the noise, not even those of {name}, which fit best: record longer"
-    if margin < MARGIN:
-        second = f"{ranked[1].teeth.flexspline}/{ranked[1].teeth.circular_spline}"
-        why = f"{second} nearly as well (odds {math.exp(margin):.0f} to 1 over {math.degrees(travel):.0f}° of travel)"
-    elif best.lines_found < 2 or as_pair < MARGIN:
-        why = (
-            f"a single line explains {math.degrees(travel):.0f}° of travel nearly as well, and may be something else's"
-        )
-    elif math.isfinite(speed):
-        why = f"at one speed ({speed:.2g} rad/s) a fixed frequency of the machine looks the same: vary the speed"
-    elif _beside_encoder(best.teeth):
-        why = "an encoder's own errors come at these orders too"
-    else:
-        rest = f"by odds of 10^{margin / math.log(10.0):.0f} to 1" if math.isfinite(margin) else "being the only one"
-        return f"{name} teeth fit best, {rest}; the mount does not show in the lines"
-    return f"{name} teeth fit best but {why}: not conclusive"
+def shows_two_lines(candidate: Candidate, parts: Sequence[FitLines]) -> bool:
+    """Whether both lines of a pair stand out with what is between and beside them fitted along: no tone makes two."""
+    for k in candidate.multiples:
+        lower, upper = candidate.teeth.lines(k)
+        orders = LineOrders.of_pair(candidate.teeth.lines(k), motor=np.arange(lower - 2.0, upper + 3.0))
+        if any(fit.chances.max() < CERTAIN for part in parts if (fit := part(orders)) is not None):
+            return True
+    return False

@@ -1,43 +1,30 @@
-"""How well the model with other tooth numbers explains the same motion: the judge of a suspicion."""
+"""Whether the model with other tooth numbers explains the motion better, where the travel does not separate lines."""
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import NamedTuple
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ...acquisition.record import Record
-from ...arrays import BoolArray, FloatArray
+from ...arrays import FloatArray
 from ...errors import ParameterError
-from ...model.parameters import Dynamics
 from ...reducer import Reducer
 from ..fit.gauss_newton import Fit, Problem
-from ..fit.information import Information
-from ..fit.linearisation import Predictor
-from ..fit.multistart import signal_level
-from ..fit.unknowns import Unknowns
+from ..fit.multistart import START_LOADS, signal_level
 from ..segment.segment import Segment, SegmentBuilder
 
 LONGEST = 1.5
 """Motion [s] of the oldest and of the newest segment that a trial looks at: far apart, few samples tell orders."""
 
+PROOF = 50.0
+"""Logarithm of the likelihood ratio by which other teeth must beat those given."""
+
+GAIN = 1.15
+"""Variance left with the given teeth over that left with others, from which these are believed: a tone, smeared over
+the orders by a changing speed, can be mimicked in part, but not so far."""
+
 _ROUNDS = 4
-
-
-class Lead(NamedTuple):
-    """By how much tooth numbers explain the motion better than those given.
-
-    Attributes
-    ----------
-    log_odds : float
-        Logarithm of the likelihood ratio; -inf where the lines are too fast for the sampling rate.
-    gain : float
-        Variance that the given teeth leave over the one that these leave.
-    """
-
-    log_odds: float
-    gain: float
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -46,107 +33,76 @@ class ToothTrial:
 
     Attributes
     ----------
-    segments : sequence of Segment
+    problem : Problem
         Recent motion as prepared for the fit with the given teeth; its oldest and its newest part are used.
-    given : Dynamics
-    unknowns : Unknowns
-    active : ndarray of bool, shape (unknowns,)
-        Unknowns that may move with the teeth given.
-    prior : Information
-    reference_torque : float
-        [N·m]
     values : ndarray, shape (unknowns,)
         Best values with the teeth given.
-    load_starts : sequence of complex
-        Loads, in units of the reference torque at the second of their orders, from which other teeth start.
     inertial : bool
         Whether the sensor also feels gravity.
     """
 
-    segments: Sequence[Segment]
-    given: Dynamics
-    unknowns: Unknowns
-    active: BoolArray
-    prior: Information
-    reference_torque: float
+    problem: Problem
     values: FloatArray
-    load_starts: Sequence[complex]
     inertial: bool = False
 
-    def leads(self, given: Reducer, others: Sequence[Reducer]) -> tuple[Lead, ...]:
-        """Compare other reducers with the one given.
+    def best(self, given: Reducer, others: Sequence[Reducer]) -> Reducer | None:
+        """Return the one of some reducers that explains the motion far better than the given one; None if none does.
 
         The likelihood is that of white noise whose variance is at its own best, over the band that all fits look at.
         """
         # what given teeth need to make up for being wrong, another resonance say, would only lead others astray
-        u = self.unknowns
-        plain = self.active & ~u.mask(u.frequency, u.damping, u.delay)
-        fits = [self._fit(reducer, plain, self._starts()) for reducer in others]
+        u, active = self.problem.predictor.unknowns, self.problem.active
+        plain = replace(self.problem, active=active & ~u.mask(u.frequency, u.damping, u.delay))
         # the same chance for the given ones: their best values so far may be those of a local minimum
-        both = [self._fit(given, self.active, None), self._fit(given, plain, self._starts())]
-        own = min((fit for fit in both if fit is not None), key=_level, default=None)
-        known = [fit for fit in fits if fit is not None]
-        if own is None or not known:
-            return (Lead(-math.inf, 0.0),) * len(others)
-        band = min(item.segment.highest_frequency for fit in (own, *known) for item in fit.segments)
-        power, freedom = _power(own, band)
-        leads = []
-        for fit in fits:
-            if fit is None:
-                leads.append(Lead(-math.inf, 0.0))
-                continue
-            left, size = _power(fit, band)
-            gain = (power / freedom) / (left / size)
-            leads.append(Lead(0.5 * min(freedom, size) * math.log(gain), gain))
-        return tuple(leads)
+        own = [fit for fit in (self._fit(given, self.problem, self.values), self._fit(given, plain)) if fit]
+        fits = {other: fit for other in others if (fit := self._fit(other, plain))}
+        if not own or not fits:
+            return None
+        band = min(item.segment.highest_frequency for fit in (*own, *fits.values()) for item in fit.segments)
+        power, freedom = min((_power(fit, band) for fit in own), key=lambda left: left[0] / left[1])
+        left = {other: _power(fit, band) for other, fit in fits.items()}
+        best = min(left, key=lambda other: left[other][0] / left[other][1])
+        gain = (power / freedom) / (left[best][0] / left[best][1])
+        return best if gain > GAIN and 0.5 * min(freedom, left[best][1]) * math.log(gain) > PROOF else None
 
-    def _starts(self) -> list[FloatArray]:
-        u = self.unknowns
-        starts = []
-        for load in self.load_starts:
-            start = u.zero()
-            start[u.torque] = self.values[u.torque]
-            start[u.load_line(2)] = load.real, load.imag
-            starts.append(start)
-        return starts
-
-    def _fit(self, reducer: Reducer, active: BoolArray, starts: Sequence[FloatArray] | None) -> Fit | None:
-        """Fit teeth from some starts, or from the best values known; None where that is not possible."""
+    def _fit(self, reducer: Reducer, problem: Problem, start: FloatArray | None = None) -> Fit | None:
+        """Fit teeth from a start, or without defects from no load and from one; None where that is not possible."""
+        unknowns, given = problem.predictor.unknowns, problem.predictor.given
         builder = SegmentBuilder(
             reducer=reducer,
-            harmonics=self.unknowns.harmonics,
-            load_orders=self.unknowns.load_orders,
-            natural_frequency=self.given.natural_frequency,
+            harmonics=unknowns.harmonics,
+            load_orders=unknowns.load_orders,
+            natural_frequency=given.natural_frequency,
             inertial=self.inertial,
             keep_tones=True,  # at one speed they may be these teeth's lines
         )
         try:
-            segments = [builder.build([record], None) for record in self._records()]
-        except ParameterError:
-            return None  # these teeth's lines are too fast for the sampling rate
-        problem = Problem(
-            segments=segments,
-            predictor=Predictor(unknowns=self.unknowns, given=self.given, reference_torque=self.reference_torque),
-            prior=self.prior,
-            floor=signal_level(segments),
-            active=active,
-        )
-        try:
-            if starts is None:
-                return problem.solve(self.values, rounds=_ROUNDS)
-            return problem.multistart(starts, rounds=_ROUNDS)[1]
-        except (FloatingPointError, np.linalg.LinAlgError):
-            return None
+            segments = [builder.build([record], None) for record in _records(problem.segments)]
+            own = replace(problem, segments=segments, floor=signal_level(segments))
+            return own.solve(start, rounds=_ROUNDS) if start is not None else self._best_fit(own)
+        except (ParameterError, FloatingPointError, np.linalg.LinAlgError):
+            return None  # these teeth's lines are too fast for the sampling rate, or nothing fits
 
-    def _records(self) -> list[Record]:
-        """The oldest and the newest part of the motion."""
-        oldest, newest = self.segments[0], self.segments[-1]
-        if len(self.segments) == 1:
-            return [_cut(newest, slice(0, round(2.0 * LONGEST / newest.period)))]
-        return [
-            _cut(oldest, slice(0, round(LONGEST / oldest.period))),
-            _cut(newest, slice(-round(LONGEST / newest.period), None)),
-        ]
+    def _best_fit(self, problem: Problem) -> Fit:
+        u = problem.predictor.unknowns
+        starts = []
+        for load in (0.0, START_LOADS[0]):
+            start = u.zero()
+            start[u.torque] = self.values[u.torque]
+            start[u.load_line(2)] = load.real, load.imag
+            starts.append(start)
+        return problem.multistart(starts, rounds=_ROUNDS)[1]
+
+
+def _records(segments: Sequence[Segment]) -> list[Record]:
+    """The oldest and the newest part of the motion."""
+    oldest, newest = segments[0], segments[-1]
+    if len(segments) == 1:
+        return [_cut(newest, slice(0, round(2.0 * LONGEST / newest.period)))]
+    return [
+        _cut(oldest, slice(0, round(LONGEST / oldest.period))),
+        _cut(newest, slice(-round(LONGEST / newest.period), None)),
+    ]
 
 
 def _cut(segment: Segment, part: slice) -> Record:
@@ -159,12 +115,6 @@ def _cut(segment: Segment, part: slice) -> Record:
         speed=segment.speed[part],
         torque=segment.at_steps.torque[:: segment.substeps][part],
     )
-
-
-def _level(fit: Fit) -> float:
-    """Mean square that a fit leaves."""
-    power, freedom = _power(fit, math.inf)
-    return power / freedom
 
 
 def _power(fit: Fit, band: float) -> tuple[float, float]:

@@ -1,37 +1,45 @@
-"""Watches whether the vibration belongs to other tooth numbers than those given: suspicion by lines, proof by fits."""
+"""Watches whether the vibration belongs to other tooth numbers than those given."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+
+import numpy as np
 
 from ...model.parameters import Dynamics
 from ...orders.spectrum import OrderSpectrum, with_segment
 from ...reducer import Reducer
 from ..fit.gauss_newton import Fit
-from .candidates import APART, ToothSuspect, tooth_suspects, unexplained
-from .trial import Lead
+from ..limitation import Limitation
+from .candidates import ToothPair, strongest
+from .ranking import contradiction, rank, shows_two_lines
 
 FIRST_LOOK = 3.4
 """Motion [s] from which tooth numbers are questioned, and before which nothing is named."""
 
-OFTEN, RARE = 1.5, 3.0
-"""Factors by which motion must grow between looks while there are less than `YOUNG` seconds of it, and later."""
+LEAD = 30.0
+"""Log evidence by which other teeth must lead: far above chance, for lines that change with the speed are none that
+the regression knows, and those of the right teeth then trailed others by up to 22."""
 
-YOUNG = 10.0
-"""Motion [s]."""
+GROWTH = 2.0
+"""Factor by which motion must grow before the same candidates are compared once more."""
 
-PROOF = 50.0
-"""Logarithm of the likelihood ratio by which other teeth must beat those given."""
+APART = 0.75
+"""Output revolutions from which the two lines of the first pair are seen as two: half a one more than Fourier."""
 
-GAIN, GAIN_NEAR, GAIN_APART = 1.5, 1.15, 1.05
-"""Variance left with the given teeth over that left with others, from which these are believed even where their lines
-are not found one by one: a tone, smeared over the orders by a changing speed, can be mimicked in part, but not so far.
-The second one is for teeth `NEAR` those given, which mimic a tone no better than these do, the third one for the same
-where travel parts the two lines."""
+TONES_APART = 1.0
+"""Output revolutions from which a tone between two lines is not mistaken for both."""
 
 NEAR = 4.5
-"""Difference of the tooth numbers."""
+"""Difference of tooth numbers up to which less travel than that blurs the lines of one pair into those of another."""
 
-_MOST_LATE = 2  # suspects tried once there are more than `YOUNG` seconds
+LEAST_TURNS = 0.2
+"""Output revolutions below which the order spectrum is too blurred to suspect anything."""
+
+SHARE = 0.02
+"""Part of the largest line that an unexplained one must have to matter."""
+
+_STANDS_OUT = 5.0  # medians of the spectrum: 3e-8 by chance
+_LOWEST_ORDER = 20  # gravity, friction and the load's own orders lie below
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,16 +50,19 @@ class ToothWatch:
     ----------
     signal, residual : OrderSpectrum
         Of the vibration, and of what the fit with the given teeth leaves of it.
-    looked : float
-        Motion [s] at the last look.
-    rival : ToothSuspect or None
-        Other tooth numbers that explain the vibration better.
+    asked : tuple of ToothPair
+        Candidates that were compared last.
+    seconds : float
+        Motion seen [s] by then.
+    doubt : Limitation or None
+        Why no part may be named, if other tooth numbers explain the vibration better.
     """
 
     signal: OrderSpectrum = field(default_factory=OrderSpectrum)
     residual: OrderSpectrum = field(default_factory=OrderSpectrum)
-    looked: float = 0.0
-    rival: ToothSuspect | None = None
+    asked: tuple[ToothPair, ...] = ()
+    seconds: float = 0.0
+    doubt: Limitation | None = None
 
     def after(self, fit: Fit, dynamics: Dynamics, *, anew: bool) -> "ToothWatch":
         """Add the segments of a fit; forget those before if it was made anew of all at hand."""
@@ -67,59 +78,54 @@ class ToothWatch:
 
     def look(
         self,
-        leads: Callable[[Reducer, Sequence[Reducer]], tuple[Lead, ...]],
         given: Reducer,
         harmonics: int,
+        trial: Callable[[Reducer, Sequence[Reducer]], Reducer | None],
         *,
         seconds: float,
         one_speed: bool,
     ) -> "ToothWatch":
-        """Question the tooth numbers if the lines give reason to, as often as effort allows.
+        """Compare other tooth numbers with those given, once for each change of what speaks for them.
 
         Parameters
         ----------
-        leads : callable
-            Compares the given reducer (first argument) with others, see :meth:`ToothTrial.leads`.
         given : Reducer
         harmonics : int
+        trial : callable
+            Decides between the given reducer and others whose lines the travel does not separate, see
+            :meth:`ToothTrial.best`.
         seconds : float
             Motion seen.
         one_speed : bool
-            Whether all of it was at one speed.
+            Whether all of it was at one speed: then a tone of fixed frequency looks like one line, and only both
+            lines of a pair are evidence. Else any two lines are.
         """
-        if seconds < FIRST_LOOK or seconds < (OFTEN if seconds < YOUNG else RARE) * self.looked:
+        if seconds < FIRST_LOOK:
             return self
-        if not unexplained(self.signal, self.residual):
-            return replace(self, rival=None)
-        suspects: tuple[ToothSuspect, ...]
-        if self.rival is not None and seconds >= YOUNG:
-            suspects = (self.rival,)  # once found, it need only be confirmed now and then
-        else:
-            suspects = tooth_suspects(self.signal, given, harmonics, one_speed=one_speed)
-        if not suspects:
-            return replace(self, rival=None)
-        if seconds >= YOUNG:
-            suspects = suspects[:_MOST_LATE]
-        lead = leads(given, [suspect.reducer for suspect in suspects])
-        best = max(range(len(suspects)), key=lambda number: lead[number].log_odds)
-        suspect, found = suspects[best], lead[best]
-        apart = abs(suspect.reducer.output_orders.circular_spline - given.output_orders.circular_spline)
-        near = GAIN_APART if self.signal.turns > APART else GAIN_NEAR
-        gain = 1.0 if suspect.evident else near if apart < NEAR else GAIN
-        proven = found.log_odds > PROOF and found.gain > gain
-        return replace(self, looked=seconds, rival=suspect if proven else None)
+        if not self._is_unexplained:
+            return replace(self, asked=(), doubt=None)
+        candidates = strongest(self.signal.amplitudes, given, harmonics)
+        asked = tuple(candidate.teeth for candidate in candidates)
+        if asked == self.asked and seconds < GROWTH * self.seconds:
+            return self
+        parts = [self.signal.solve]
+        ranking = rank(candidates, parts)
+        best, own, doubt = ranking.ranked[0], ToothPair.of(given), None
+        several = best.pairs_found > 1 and not one_speed
+        if not several and self.signal.turns > TONES_APART:
+            several = shows_two_lines(candidates[asked.index(best.teeth)], parts)
+        if several and ranking.lead(own) > LEAD:
+            doubt = ranking.contradiction(given)
+        elif not one_speed and self.signal.turns < APART:
+            near = [pair for pair in ranking.contenders(own, LEAD) if abs(pair.flexspline - own.flexspline) < NEAR]
+            better = trial(given, [pair.reducer(given.mount) for pair in near]) if near else None
+            doubt = contradiction(given, ToothPair.of(better)) if better is not None else None
+        return replace(self, asked=asked, seconds=seconds, doubt=doubt)
 
-    def blocker(self, given: Reducer) -> str:
-        """Say why no part may be named; empty if the teeth given are not in doubt."""
-        if self.rival is None:
-            return ""
-        own, other = (f"{r.flexspline_teeth}/{r.circular_spline_teeth}" for r in (given, self.rival.reducer))
-        if self.rival.lines:
-            shown = ", ".join(f"{line:g}" for line in self.rival.lines)
-            found = f"lines stand at {shown} cycles per output revolution, and {other} teeth explain them"
-        else:
-            found = f"{other} teeth, or numbers near by, explain the vibration"
-        return (
-            f"Check the tooth numbers: {found} far better than the {own} given; correct reducer.flexspline_teeth and "
-            "reducer.circular_spline_teeth, for with wrong ones no part can be named"
-        )
+    @property
+    def _is_unexplained(self) -> bool:
+        """Whether the residual has a line that noise does not make, of a size that matters."""
+        if self.signal.turns < LEAST_TURNS:
+            return False
+        left, whole = (spectrum.amplitudes[_LOWEST_ORDER:] for spectrum in (self.residual, self.signal))
+        return float(left.max()) > max(_STANDS_OUT * float(np.median(left)), SHARE * float(whole.max()))

@@ -7,7 +7,6 @@ import numpy as np
 
 from ...arrays import FloatArray
 from ...model.parameters import ParametricModel, StiffnessSeries, Torque
-from ...reducer import Reducer
 from ..checks.limitations import FitSummary, limitations_of
 from ..checks.residual import LineResidual
 from ..fit.gauss_newton import Fit
@@ -15,7 +14,6 @@ from ..fit.indexes import stiffness_indexes
 from ..fit.normal_equations import LinearisedSegment
 from ..fit.score_test import score_tests
 from ..fit.unknowns import Unknowns
-from ..limitation import Limitation, LimitationCode, blocker
 from ..result import Identification
 from .context import Context
 from .line_amplitudes import measure_lines
@@ -92,16 +90,11 @@ def conclude(context: Context, state: State, fit: Fit) -> Identification:
         model=None if relative else model,
         fit_status=fit.status,
         limitations=(
-            *_wrong_teeth(state, reducer),
+            *([state.teeth.doubt] if state.teeth.doubt else []),
             *limitations_of(summary, reducer, context.settings.diagnosis.warn_index),
         ),
         beta_covariance=np.stack([_of_phasors(covariance, part) for part in (u.circular_spline, u.flexspline)]),
     )
-
-
-def _wrong_teeth(state: State, reducer: Reducer) -> tuple[Limitation, ...]:
-    text = state.teeth.blocker(reducer)
-    return (blocker(LimitationCode.OTHER, text=text),) if text else ()
 
 
 def _systematic(u: Unknowns, values: FloatArray, residual: LineResidual, span: float) -> FloatArray:

@@ -11,7 +11,7 @@ from ...errors import HdMonitorError
 from ...settings import JointSettings
 from ..checks.limitations import CONTRADICTION
 from ..fit.gauss_newton import Fit
-from ..fit.multistart import START_LOADS, multistart_newest
+from ..fit.multistart import multistart_newest
 from ..fit.score_test import score_tests
 from ..limitation import LimitationCode, blocker
 from ..teeth.trial import ToothTrial
@@ -121,7 +121,7 @@ class Estimator:
         inflation = left.residual.inflation(state.coverage.span)
         state = replace(state, schedule=state.schedule.after(inflation, state.seconds))
         # With the wrong teeth no solution is right
-        hopeless = state.teeth.rival is not None and state.schedule.looked >= SECOND_LOOK
+        hopeless = state.teeth.doubt is not None and state.schedule.looked >= SECOND_LOOK
         if hopeless or not state.schedule.is_due(inflation, state.seconds):
             return state, fit, left
         state, fit = look_elsewhere(context, state, fit)
@@ -157,20 +157,12 @@ class Estimator:
         """Ask whether other tooth numbers than those given explain the recent motion better."""
         context = self._context
         trial = ToothTrial(
-            segments=state.recent,
-            given=context.given,
-            unknowns=context.unknowns,
-            active=state.active,
-            prior=context.prior,
-            reference_torque=context.predictor(state).reference_torque,
-            values=fit.values,
-            load_starts=(0.0, START_LOADS[0]),
-            inertial=context.preparation.inertial,
+            problem=context.problem_of_all(state), values=fit.values, inertial=context.preparation.inertial
         )
         return state.teeth.after(fit, context.given, anew=state.schedule.restarted == state.seconds).look(
-            trial.leads,
             context.settings.reducer,
             context.unknowns.harmonics,
+            trial.best,
             seconds=state.seconds,
             one_speed=not state.coverage.speed_varies,
         )

@@ -2,10 +2,8 @@ import pytest
 
 from hd_monitor.diagnosis.limitations import describe_limitation
 from hd_monitor.identification.sensorless.agreement import (
-    BETTER_TEETH,
     DirectionEvidence,
     disagreements,
-    other_teeth,
     pooled_dominance,
 )
 from hd_monitor.reducer import LinePair
@@ -75,19 +73,3 @@ def test_a_stronger_line_elsewhere_questions_the_teeth():
     assert "stronger line at about 190" in found[0]
     assert "reducer.flexspline_teeth" in found[0]
     assert reasons(direction(rival=190.0), direction()) == ()
-
-
-@pytest.mark.parametrize(
-    ("lead", "chances", "said"),
-    [
-        (BETTER_TEETH + 1.0, [(1e-6, 0.5), (0.2, 1e-6)], True),
-        (BETTER_TEETH - 1.0, [(1e-6, 1e-6), (1e-6, 1e-6)], False),
-        (BETTER_TEETH + 1.0, [(1e-6, 0.5), (1e-6, 0.5)], False),
-    ],
-    ids=["both lines", "little better", "one line"],
-)
-def test_other_teeth_are_suspected_for_both_lines_only(lead, chances, said):
-    found = other_teeth(lead, LinePair(200, 202), [LinePair(*pair) for pair in chances], LinePair(198, 200))
-    reasons = list(map(describe_limitation, found))
-    assert bool(reasons) is said
-    assert all("200/202 teeth" in text and "198/200" in text for text in reasons)

@@ -4,10 +4,12 @@ import numpy as np
 import pytest
 
 from hd_monitor.acquisition.record import JointSamples, Record
+from hd_monitor.diagnosis.tooth_ranking import describe_ranking
 from hd_monitor.errors import ParameterError
-from hd_monitor.identification.teeth.ranking import ToothPair, default_candidates, rank_tooth_pairs
+from hd_monitor.identification.teeth.candidates import ToothPair, every_pair
 from hd_monitor.model import Dynamics, ParametricModel, StiffnessSeries, Torque
 from hd_monitor.model.simulation import linear_sweep, simulate
+from hd_monitor.offline.identify_teeth import rank_tooth_pairs
 from hd_monitor.reducer import Reducer
 
 
@@ -26,12 +28,12 @@ def swinging(lines, noise=0.1, seconds=60.0, seed=1, span=1.4):
 @pytest.mark.parametrize("teeth", [(100, 102), (160, 162), (161, 163), (200, 202), (240, 242)])
 def test_two_lines_tell_the_teeth_out_of_every_pair(teeth):
     ranking = rank_tooth_pairs(swinging(dict.fromkeys(teeth, 0.2)))
-    assert ranking.ranked[0].teeth == teeth
+    assert ranking.ranked[0].teeth == ToothPair(*teeth)
     assert ranking.conclusive
     assert ranking.margin > math.log(1000.0)
-    assert f"{teeth[0]}/{teeth[1]} teeth fit best, by odds of" in ranking.statement
-    assert "mount" in ranking.statement
-    assert len(ranking.ranked) == len(default_candidates())
+    assert f"{teeth[0]}/{teeth[1]} teeth fit best, by odds of" in describe_ranking(ranking)
+    assert "mount" in describe_ranking(ranking)
+    assert len(ranking.ranked) == len(every_pair())
     evidence = [found.log_evidence for found in ranking.ranked]
     assert evidence == sorted(evidence, reverse=True)
 
@@ -40,7 +42,7 @@ def test_one_line_alone_does_not_tell():
     ranking = rank_tooth_pairs(swinging({200: 0.3}))
     assert {found.teeth for found in ranking.ranked[:3]} >= {(198, 200), (200, 202)}
     assert not ranking.conclusive
-    assert "not conclusive" in ranking.statement
+    assert "not conclusive" in describe_ranking(ranking)
 
 
 def test_a_strong_line_with_a_companion_lost_in_noise_does_not_tell():
@@ -54,7 +56,7 @@ def test_noise_alone_does_not_tell():
         ranking = rank_tooth_pairs(swinging({}, seed=seed))
         assert not ranking.conclusive
         assert ranking.ranked[0].lines_found == 0
-        assert "stand out of the noise" in ranking.statement
+        assert "stand out of the noise" in describe_ranking(ranking)
 
 
 def test_little_travel_does_not_tell():
@@ -69,22 +71,22 @@ def test_one_speed_does_not_tell_because_any_fixed_frequency_would_do():
     effort = 0.3 * np.cos(160 * angle) + 0.3 * np.cos(162 * angle)
     effort += 0.1 * np.random.default_rng(1).standard_normal(times.size)
     ranking = rank_tooth_pairs(JointSamples(times=times, angle=angle, speed=np.full(times.size, 0.5), effort=effort))
-    assert ranking.ranked[0].teeth == (160, 162)
+    assert ranking.ranked[0].teeth == ToothPair(160, 162)
     assert not ranking.conclusive
-    assert "vary the speed" in ranking.statement
+    assert "vary the speed" in describe_ranking(ranking)
 
 
 def test_an_encoder_s_orders_are_not_taken_for_teeth():
     ranking = rank_tooth_pairs(swinging({255: 0.2, 257: 0.2}))
-    assert ranking.ranked[0].teeth == (255, 257)
+    assert ranking.ranked[0].teeth == ToothPair(255, 257)
     assert not ranking.conclusive
-    assert "encoder" in ranking.statement
+    assert "encoder" in describe_ranking(ranking)
 
 
 def test_multiples_belong_to_their_pair():
     """The second pair's lines at 240 and 244 are no reason for 240/242 teeth; the motor's 60 none for 60/62."""
     ranking = rank_tooth_pairs(swinging({60: 0.4, 120: 0.15, 122: 0.15, 240: 0.3, 244: 0.3}))
-    assert ranking.ranked[0].teeth == (120, 122)
+    assert ranking.ranked[0].teeth == ToothPair(120, 122)
     assert ranking.conclusive
 
 
@@ -102,9 +104,9 @@ def test_velocity_can_be_the_signal():
     speed += 0.002 * np.random.default_rng(1).standard_normal(speed.size)
     samples = JointSamples(times=whole.times, angle=whole.angle, speed=speed, effort=np.full(speed.size, np.nan))
     ranking = rank_tooth_pairs(samples, source="joint_velocity")
-    assert ranking.ranked[0].teeth == (160, 162)
+    assert ranking.ranked[0].teeth == ToothPair(160, 162)
     assert ranking.conclusive
-    assert "No motion in which lines could show" in rank_tooth_pairs(samples).statement
+    assert "No motion in which lines could show" in describe_ranking(rank_tooth_pairs(samples))
 
 
 def accelerations(teeth, from_hz, rate_hz, seconds, noise=0.05):
@@ -140,7 +142,7 @@ def accelerations(teeth, from_hz, rate_hz, seconds, noise=0.05):
 @pytest.mark.parametrize("teeth", [(160, 162), (120, 122)])
 def test_accelerations_tell_the_teeth_too(teeth):
     ranking = rank_tooth_pairs(accelerations(teeth, 6.0, 0.4, 40.0))
-    assert ranking.ranked[0].teeth == teeth
+    assert ranking.ranked[0].teeth == ToothPair(*teeth)
     assert ranking.conclusive
 
 
@@ -154,7 +156,7 @@ def test_refuses_candidates_that_are_none(candidates):
 @pytest.mark.parametrize("joint", [4, 5, 6])
 def test_a_real_arm_s_teeth_come_out_where_both_lines_show(ur10e, joint):
     ranking = rank_tooth_pairs(ur10e("ur-20_02_12-50sec_12harm", joint))
-    assert ranking.ranked[0].teeth == (200, 202)
+    assert ranking.ranked[0].teeth == ToothPair(200, 202)
     assert ranking.conclusive
 
 
@@ -166,4 +168,4 @@ def test_a_real_arm_s_teeth_never_come_out_wrong(ur10e, source):
     joints += [(f"ur-20_02_{run}", joint) for run in ("06-20sec_10harm", "12-50sec_12harm") for joint in range(1, 7)]
     for file, joint in joints:
         ranking = rank_tooth_pairs(ur10e(file, joint), source=source)
-        assert not ranking.conclusive or ranking.ranked[0].teeth == (200, 202)
+        assert not ranking.conclusive or ranking.ranked[0].teeth == ToothPair(200, 202)

@@ -9,9 +9,8 @@ from tests.simulated.cases import Case, simulate
 
 from hd_monitor.diagnosis.limitations import describe_limitation
 from hd_monitor.identification.identifier import Identifier
-from hd_monitor.identification.teeth.candidates import tooth_suspects, unexplained
-from hd_monitor.identification.teeth.trial import Lead
-from hd_monitor.identification.teeth.watch import FIRST_LOOK, GAIN, GAIN_NEAR, PROOF, ToothWatch
+from hd_monitor.identification.teeth.candidates import STRONGEST, ToothPair, strongest
+from hd_monitor.identification.teeth.watch import FIRST_LOOK, GROWTH, ToothWatch
 from hd_monitor.model import Dynamics, ParametricModel, StiffnessSeries, Torque
 from hd_monitor.orders.spectrum import PER_TURN, TURNS, OrderSpectrum
 from hd_monitor.reducer import Reducer
@@ -23,10 +22,6 @@ MODEL = ParametricModel(
     circular_spline=StiffnessSeries((0.035, 0.012, 0.01), (2.5, 0.3, 1.0)),
     torque=Torque(mean=10.0, load_fluctuation=2.0, load_phase=1.0),
 )
-
-
-def teeth(flexspline):
-    return Reducer(flexspline_teeth=flexspline, circular_spline_teeth=flexspline + 2)
 
 
 def case(**changes):
@@ -104,65 +99,107 @@ def test_amplitudes_are_those_of_the_lines():
     assert amplitudes[100:150].max() < 0.02
 
 
-def test_both_lines_raise_suspicion_and_one_does_not_at_one_speed():
-    (suspect, *_) = tooth_suspects(spectrum({200: 1.0, 202: 0.3}), RIG, 3, one_speed=True)
-    assert suspect.reducer == teeth(200)
-    assert suspect.lines == (200.0, 202.0)
-    assert tooth_suspects(spectrum({200: 1.0}), RIG, 3, one_speed=True) == ()
-    (suspect, *_) = tooth_suspects(spectrum({200: 1.0, 400: 0.3}), RIG, 3, one_speed=False)
-    assert suspect.reducer in (teeth(200), teeth(198))
+def watching(lines, left=None, **changes):
+    residual = spectrum(lines if left is None else left, **changes)
+    return ToothWatch(signal=spectrum(lines, **changes), residual=residual)
+
+
+def no_trial(given, others):
+    raise AssertionError(f"tried {others} against {given}")
+
+
+def look(watch, seconds=5.0, one_speed=True, trial=no_trial):
+    return watch.look(RIG, 3, trial, seconds=seconds, one_speed=one_speed)
+
+
+def said(watch):
+    return "" if watch.doubt is None else describe_limitation(watch.doubt)
+
+
+def test_the_pairs_with_the_strongest_lines_are_compared_with_the_one_given():
+    candidates = strongest(spectrum({200: 1.0, 202: 0.3, 400: 0.2}, tone=103.3).amplitudes, RIG, 3)
+    pairs = [candidate.teeth for candidate in candidates]
+    assert len(pairs) == STRONGEST + 1
+    assert {ToothPair(160, 162), ToothPair(200, 202)} <= set(pairs)
+
+
+def test_the_motors_orders_count_for_no_other_pair():
+    counted = {c.teeth: c.multiples for c in strongest(spectrum({160: 1.0, 164: 1.0}).amplitudes, RIG, 3)}
+    assert counted[ToothPair(160, 162)] == (1.0, 2.0, 3.0)
+    assert counted[ToothPair(80, 82)] == (2.0,)
+
+
+def test_both_lines_contradict_the_teeth_and_one_does_not_at_one_speed():
+    doubtful = look(watching({200: 1.0, 202: 0.3}))
+    assert said(doubtful).startswith("Check the tooth numbers: lines stand at 200, 202 cycles per output revolution")
+    assert "200/202 teeth explain them far better than the 160/162 given" in said(doubtful)
+    assert look(watching({200: 1.0})).doubt is None
+    assert look(watching({200: 1.0, 600: 0.3})).doubt is None
+    assert look(watching({200: 1.0, 600: 0.3}), one_speed=False).doubt is not None
 
 
 @pytest.mark.parametrize("order", [103.0, 103.3, 200.0, 480.5])
-def test_a_tone_raises_no_suspicion(order):
-    signal = spectrum({160: 0.3, 162: 0.5}, tone=order)
-    assert tooth_suspects(signal, RIG, 3, one_speed=True) == ()
+@pytest.mark.parametrize("turns", [0.9, 1.5, 6.0])
+def test_a_tone_contradicts_nothing(order, turns):
+    assert look(watching({160: 0.3, 162: 0.5}, turns=turns, tone=order)).doubt is None
+    assert look(watching({}, turns=turns, tone=order)).doubt is None
 
 
-def test_the_motors_lines_and_their_side_lines_raise_no_suspicion():
-    signal = spectrum({78: 0.2, 80: 1.0, 82: 0.3, 160: 0.3, 162: 0.5, 240: 0.2, 242: 0.2})
-    assert tooth_suspects(signal, RIG, 3, one_speed=True) == ()
+def test_the_motors_lines_and_their_side_lines_contradict_nothing():
+    lines = {78: 0.2, 80: 1.0, 82: 0.3, 160: 0.3, 162: 0.5, 240: 0.2, 242: 0.2}
+    assert look(watching(lines)).doubt is None
+    assert look(watching(lines), one_speed=False).doubt is None
 
 
-def test_noise_alone_leaves_nothing_unexplained():
-    signal = spectrum({160: 1.0})
-    assert not any(unexplained(signal, spectrum({}, seed=seed)) for seed in range(40))
-    assert unexplained(signal, spectrum({200: 0.1}))
-    assert not unexplained(signal, spectrum({200: 0.01}))
-    assert not unexplained(spectrum({160: 1.0}, turns=0.1), spectrum({200: 0.5}, turns=0.1))
+@pytest.mark.parametrize("shift", [-40, -20, -2, -1, 1, 2, 20, 40])
+def test_other_teeth_are_told_by_their_lines_whatever_they_share_with_those_given(shift):
+    lines = {160: 0.3, 162: 1.0, 320: 0.3, 324: 0.2}
+    moved = {(order // 160) * shift + order: size for order, size in lines.items()}
+    assert f"{160 + shift}/{162 + shift} teeth" in said(look(watching(moved)))
+    assert look(watching(lines)).doubt is None
 
 
-def looked(watch, lead, seconds=5.0, one_speed=True):
-    return watch.look(lambda given, others: (lead,) * len(others), RIG, 3, seconds=seconds, one_speed=one_speed)
+def test_nothing_is_asked_while_nothing_is_unexplained():
+    lines = {200: 1.0, 202: 0.5}
+    for seed in range(40):
+        quiet = ToothWatch(signal=spectrum(lines), residual=spectrum({}, seed=seed))
+        assert look(quiet).asked == ()
+    assert look(watching(lines, left={200: 0.1})).asked
+    assert not look(watching(lines, left={200: 0.01})).asked
+    assert not look(watching(lines, turns=0.1)).asked
+    assert look(watching(lines), seconds=FIRST_LOOK - 0.1).asked == ()
 
 
-def watching(lines, **changes):
-    return ToothWatch(signal=spectrum(lines, **changes), residual=spectrum(lines, **changes))
+def test_the_same_candidates_are_compared_once_until_the_motion_has_grown():
+    watch = look(watching({200: 1.0, 202: 0.5}), seconds=20.0)
+    assert watch.doubt is not None
+    assert look(watch, seconds=20.0 * GROWTH - 1.0) is watch
+    assert look(watch, seconds=20.0 * GROWTH + 1.0).seconds == 20.0 * GROWTH + 1.0
+    other = replace(watch, signal=spectrum({120: 1.0, 122: 0.5}))
+    assert "120/122 teeth" in said(look(other, seconds=21.0))
 
 
-def test_suspicion_needs_proof():
-    watch = watching({200: 1.0, 202: 0.5})
-    assert looked(watch, Lead(PROOF - 1.0, 2.0)).rival is None
-    assert looked(watch, Lead(PROOF + 1.0, 1.01)).rival.reducer == teeth(200)
-    assert looked(watch, Lead(-math.inf, 0.0)).rival is None
-    assert looked(watch, Lead(1e3, 2.0), seconds=FIRST_LOOK - 0.1).rival is None
+def test_a_doubt_ends_once_nothing_is_unexplained_and_comes_back_with_it():
+    watch = look(watching({200: 1.0, 202: 0.5}), seconds=20.0)
+    cured = look(replace(watch, residual=spectrum({})), seconds=21.0)
+    assert cured.doubt is None
+    assert look(replace(cured, residual=watch.residual), seconds=22.0).doubt == watch.doubt
 
 
-def test_lines_that_travel_does_not_part_need_more_proof():
-    far, near = watching({200: 1.0}, turns=0.3), watching({161: 1.0}, turns=0.3)
-    assert looked(far, Lead(1e3, GAIN - 0.01), one_speed=False).rival is None
-    assert looked(far, Lead(1e3, GAIN + 0.01), one_speed=False).rival.lines == ()
-    assert looked(near, Lead(1e3, GAIN_NEAR + 0.01), one_speed=False).rival is not None
+def test_where_the_travel_does_not_separate_lines_a_trial_decides_between_neighbours():
+    tried = []
 
+    def trial(given, others):
+        tried.append([other.flexspline_teeth for other in others])
+        return others[0]
 
-def test_looks_get_rare_and_a_suspicion_ends_once_nothing_is_unexplained():
-    watch = looked(watching({200: 1.0, 202: 0.5}), Lead(1e3, 2.0), seconds=20.0)
-    assert looked(watch, Lead(0.0, 1.0), seconds=59.0) is watch
-    assert watch.blocker(RIG).startswith("Check the tooth numbers: lines stand at 200, 202")
-    assert "200/202 teeth" in watch.blocker(RIG)
-    cured = looked(replace(watch, residual=spectrum({})), Lead(1e3, 2.0), seconds=61.0)
-    assert cured.rival is None
-    assert cured.blocker(RIG) == ""
+    blurred = watching({162: 1.0, 164: 0.5}, turns=0.3, noise=2.0)
+    doubtful = look(blurred, one_speed=False, trial=trial)
+    ((first, *rest),) = tried
+    assert all(0 < abs(teeth - 160) <= 4 for teeth in (first, *rest))
+    assert said(doubtful).startswith(f"Check the tooth numbers: {first}/{first + 2} teeth, or numbers near by")
+    assert look(blurred, one_speed=False, trial=lambda given, others: None).doubt is None
+    assert look(blurred, trial=no_trial).doubt is None
 
 
 def test_fading_keeps_the_amplitudes():
