@@ -39,13 +39,14 @@ def compare_motion(samples: JointSamples, *, minimum_speed: float, reduction: fl
         Motor revolutions per output revolution.
     """
     known = np.isfinite(samples.angle) & np.isfinite(samples.speed)
-    times, speed = samples.times[known], samples.speed[known]
-    angle = np.unwrap(samples.angle[known], discont=_WRAPPED)
+    times, angle, speed = samples.times[known], samples.angle[known], samples.speed[known]
     if times.size < 3 or times[-1] - times[0] < 2.0 * WINDOW:
         return MotionAgreement(False, None)
-    first = np.flatnonzero(np.diff(np.floor((times - times[0]) / WINDOW), prepend=-1.0))
-    travelled = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(times))])
-    moved, said = np.diff(angle[first]), np.diff(travelled[first])
+    steps = angle[1:] - angle[:-1]
+    steps -= math.tau * np.rint(steps / math.tau) * (np.abs(steps) > _WRAPPED)
+    first = np.flatnonzero(np.diff(np.floor((times[1:] - times[0]) / WINDOW), prepend=-1.0))
+    moved = np.add.reduceat(steps, first)
+    said = np.add.reduceat(0.5 * (speed[1:] + speed[:-1]) * (times[1:] - times[:-1]), first)
     size_moved, size_said = float(np.linalg.norm(moved)), float(np.linalg.norm(said))
     larger = max(size_moved, size_said)
     if larger < minimum_speed * WINDOW * math.sqrt(moved.size):

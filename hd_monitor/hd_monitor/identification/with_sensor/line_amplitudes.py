@@ -5,11 +5,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...orders.regression import line_columns, solve_normal
+from ...orders.regression import solve_normal
 from ...reducer import LinePair, Reducer
 from ..fit.multistart import newest_segments
 from ..fit.noise import NoiseFloor
 from ..result import LineEstimate
+from ..segment.path import powers
 from ..segment.segment import Segment
 
 _SIDE_TRAVEL = 0.55 * math.tau  # rad of travel from which the lines between and beside a pair are fitted too
@@ -44,11 +45,14 @@ def measure_lines(
     if not pairs:
         return ()
     gap = highest_order - lowest_order
-    orders = [k * order for k in pairs for order in (lowest_order, highest_order)]
+    places = [place for k in pairs for place in ((k, 0), (k, k))]  # (k, m): k times the lowest order, m gaps above
     if float(np.ptp(angle)) > _SIDE_TRAVEL:
-        orders += [k * lowest_order + m * gap for k in pairs for m in range(-1, k + 2) if m not in (0, k)]
-    columns = np.column_stack([line_columns(angle, orders), values])
-    fit = solve_normal(columns.T @ columns, np.arange(2 * len(orders)))
+        places += [(k, m) for k in pairs for m in range(-1, k + 2) if m not in (0, k)]
+    orders = [k * lowest_order + m * gap for k, m in places]
+    base, side = (powers(np.exp(1j * order * angle), len(pairs) + 1) for order in (lowest_order, gap))
+    phase = np.stack([base[k] * (side[m] if m >= 0 else side[-m].conj()) for k, m in places])
+    columns = np.concatenate([phase.real, -phase.imag, values[None]])
+    fit = solve_normal(columns @ columns.T, np.arange(2 * len(places)))
     if fit is None:
         return ()
     solution, inverse = fit
