@@ -10,6 +10,7 @@ more than 10 %; one that makes results right should be missed in the others.
 
 import argparse
 import contextlib
+import math
 import sys
 import time
 from collections import Counter
@@ -29,7 +30,7 @@ from hd_monitor.diagnosis.judge import Judge
 from hd_monitor.diagnosis.verdict import Component
 from hd_monitor.identification.checks.residual import LineResidual, Overdispersion
 from hd_monitor.identification.fit import multistart
-from hd_monitor.identification.fit.gauss_newton import Fit
+from hd_monitor.identification.fit.gauss_newton import Fit, Problem
 from hd_monitor.identification.identifier import Identifier
 from hd_monitor.identification.segment import decimation, segment
 from hd_monitor.identification.with_sensor import estimator, search
@@ -57,6 +58,10 @@ def plain_decimation(raw: np.ndarray, period: float, line: float, natural: float
 REAL_DECIMATION = decimation.decimate
 
 MECHANISMS: dict[str, tuple[str, Patch]] = {
+    "linear last step": (
+        "a step too small to bend the model is taken without simulating its end",
+        without(Problem, "_curvature", lambda self, fit: math.inf),
+    ),
     "decimation": ("samples faster than the lines need are reduced", without(segment, "decimate", plain_decimation)),
     "tone removal": (
         "tones of fixed frequency are projected out",

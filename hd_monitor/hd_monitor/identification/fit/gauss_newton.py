@@ -20,6 +20,9 @@ LARGEST_FLUCTUATION = 0.8
 CONVERGED = 0.05
 """Size of a step, in standard deviations of the unknowns, below which the fit stands."""
 
+NEGLIGIBLE = 0.1
+"""Standard deviations that a step may miss its end by for being taken along a straight line."""
+
 _HALVINGS = 5
 _TRIAL_ROUNDS = 3  # after which the best of several starts go on
 _FINALISTS = 2
@@ -129,6 +132,8 @@ class Problem:
         for _ in range(rounds):
             if fit.step_size < CONVERGED:
                 break
+            if self._curvature(fit) < NEGLIGIBLE:
+                return self._moved(fit)
             step = fit.step * self._room(fit.values, fit.step)
             for _ in range(_HALVINGS):
                 trial = self.at(self._bounded(fit.values + step))
@@ -139,6 +144,32 @@ class Problem:
                 return replace(fit, status=FitStatus.NO_DESCENT)
             fit = trial
         return fit
+
+    def _curvature(self, fit: Fit) -> float:
+        """Size of what the model is beyond linear over the next step, in standard deviations of the unknowns."""
+        unknowns = self.predictor.unknowns
+        part = np.abs(fit.step) / unknowns.linear_range()
+        forces = unknowns.mask(unknowns.load, unknowns.torque, unknowns.inertia)
+        information = fit.equations.information + self.prior.matrix
+        forced, rest = (
+            math.sqrt(max(float(step @ information @ step), 0.0)) for step in (fit.step * forces, fit.step * ~forces)
+        )
+        # The prediction is linear in the forces: they bend it together with the other unknowns only
+        return (forced + rest) * float(part[~forces].max()) + rest * float(part[forces].max())
+
+    def _moved(self, fit: Fit) -> Fit:
+        """Return the fit after its next step, which is so small that evaluating the model there adds nothing."""
+        equations, values = fit.equations.moved(fit.step), fit.values + fit.step
+        return replace(
+            fit,
+            values=values,
+            segments=tuple(item.moved(fit.step) for item in fit.segments),
+            equations=equations,
+            cost=equations.cost + self.prior.cost(values),
+            step=np.zeros(values.size),
+            step_size=0.0,
+            status=FitStatus.CONVERGED,
+        )
 
     def multistart(self, starts: Sequence[FloatArray], *, rounds: int) -> tuple["Problem", Fit]:
         """Solve from several starts and return the best solution, with the floor of white noise that belongs to it.

@@ -1,7 +1,7 @@
 """The model's prediction of a segment, and how it changes with every unknown."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -34,6 +34,15 @@ class Linearisation:
     predicted: FloatArray
     jacobian: FloatArray
     free: FloatArray
+
+    def moved(self, segment: Segment, step: FloatArray) -> "Linearisation":
+        """Return the linearisation at a point a small `step` of the unknowns on, to first order of the step.
+
+        The free vibration is fitted to the measurement anew; the derivatives stay as they are.
+        """
+        start, residual = _fit_free(segment, self.residual - self.jacobian @ step, self.free)
+        predicted = self.predicted + self.jacobian @ step + self.free @ start
+        return replace(self, residual=residual, predicted=predicted)
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -74,7 +83,7 @@ class Predictor:
         base = oscillator.respond(inputs, initial=[[wound, 1.0, 0.0], [0.0, 0.0, omega]])
         motion = force - damping * base.velocity - spring * base.displacement
         sampled = motion[:: segment.substeps]
-        start, residual = _fit_start(segment, sampled)
+        start, residual = _fit_free(segment, segment.acceleration - sampled[:, 0], sampled[:, 1:])
         mix = np.concatenate([[1.0], start])
         theta, theta_dot, theta_ddot = base.displacement @ mix, base.velocity @ mix, motion @ mix
 
@@ -121,11 +130,10 @@ class _Along:
         return forcing
 
 
-def _fit_start(segment: Segment, motion: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Amounts of the two free vibrations that fit the measurement best, and what then remains of it."""
+def _fit_free(segment: Segment, error: FloatArray, motion: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Amounts of two free vibrations that fit an error best, and what then remains of it."""
     used, slow = segment.used, segment.slow
-    error = np.where(used, segment.acceleration - motion[:, 0], 0.0)
-    free = motion[:, 1:] * used[:, None]
+    error, free = np.where(used, error, 0.0), motion * used[:, None]
     flat_error, flat_free = error - slow @ (slow.T @ error), free - slow @ (slow.T @ free)
     start = np.linalg.lstsq(flat_free, flat_error, rcond=1e-9)[0]
     return start, error - free @ start

@@ -1,6 +1,6 @@
 """Evidence as normal equations: what a segment says about the unknowns around a point, in sums that add up."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -30,6 +30,12 @@ class NormalEquations:
     cost: float
     freedom: float
 
+    def moved(self, step: FloatArray) -> "NormalEquations":
+        """Return the same quadratic model about the point that `step` leads to."""
+        change = self.information @ step
+        cost = self.cost - 2.0 * float(self.score @ step) + float(step @ change)
+        return replace(self, score=self.score - change, cost=cost)
+
     def __add__(self, other: "NormalEquations") -> "NormalEquations":
         """Pool two pieces of evidence about the same point."""
         return NormalEquations(
@@ -53,6 +59,8 @@ class LinearisedSegment:
         Transform of the residual, free vibrations taken off, not weighted.
     derivatives : ndarray, shape (2 * bins, unknowns)
         The same of the prediction's derivatives, in standard deviations of the noise.
+    std : ndarray, shape (2 * bins,)
+        Standard deviation of the noise.
     free_leverage : ndarray, shape (2 * bins,)
         Part of the noise in every row that the fit of the free vibrations takes away.
     """
@@ -62,6 +70,7 @@ class LinearisedSegment:
     linearisation: Linearisation
     residual: FloatArray
     derivatives: FloatArray
+    std: FloatArray
     free_leverage: FloatArray
 
     def leverage(self, covariance: FloatArray) -> FloatArray:
@@ -76,6 +85,15 @@ class LinearisedSegment:
         """
         rows = self.derivatives
         return np.asarray(self.free_leverage + np.einsum("ij,ij->i", rows @ covariance, rows))
+
+    def moved(self, step: FloatArray) -> "LinearisedSegment":
+        """Return what the segment says at a point a small `step` of the unknowns on, to first order of the step."""
+        return replace(
+            self,
+            equations=self.equations.moved(step),
+            linearisation=self.linearisation.moved(self.segment, step),
+            residual=self.residual - self.std * (self.derivatives @ step),
+        )
 
 
 def linearise(segment: Segment, predictor: Predictor, values: FloatArray, floor: NoiseFloor) -> LinearisedSegment:
@@ -100,5 +118,6 @@ def linearise(segment: Segment, predictor: Predictor, values: FloatArray, floor:
         linearisation=line,
         residual=white[:, 0] * std,
         derivatives=white[:, 1:],
+        std=std,
         free_leverage=np.einsum("ij,ij->i", free, free),
     )

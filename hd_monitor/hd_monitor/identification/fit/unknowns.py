@@ -126,6 +126,21 @@ class Unknowns:
         bounds[self.delay] = 0.05
         return bounds
 
+    def linear_range(self) -> FloatArray:
+        """Steps over which the prediction's derivatives change by about their own size, shape (unknowns,).
+
+        Near a resonance they are small.
+        """
+        span = np.empty(self.size)
+        span[self.stiffness] = 0.05
+        span[self.load] = 1.0
+        span[self.frequency] = 0.01
+        span[self.damping] = 0.3
+        span[self.torque] = 1.0
+        span[self.delay] = 5e-4
+        span[self.inertia] = 1.0
+        return span
+
     def phasors(self, values: FloatArray, part: slice) -> ComplexArray:
         """Complex phasors of one of the parts, shape (harmonics,) or (load orders,)."""
         real, imaginary = np.split(values[part], 2)

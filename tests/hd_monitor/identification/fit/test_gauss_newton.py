@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hd_monitor.acquisition.record import Record
-from hd_monitor.identification.fit.gauss_newton import FitStatus, Problem
+from hd_monitor.identification.fit.gauss_newton import NEGLIGIBLE, FitStatus, Problem
 from hd_monitor.identification.fit.information import Information
 from hd_monitor.identification.fit.linearisation import Predictor
 from hd_monitor.identification.fit.noise import NoiseFloor
@@ -100,3 +100,45 @@ def test_a_fit_without_descent_says_so(fitted, monkeypatch):
     start = task.at(UNKNOWNS.zero())
     monkeypatch.setattr(Problem, "at", lambda self, values: replace(start, values=values, cost=start.cost + 1.0))
     assert task.solve(start.values, rounds=3).status is FitStatus.NO_DESCENT
+
+
+def test_the_last_step_leads_where_a_simulation_says(fitted):
+    task, fit = fitted
+    there = task.at(fit.values)
+    assert there.step_size < NEGLIGIBLE
+    assert fit.cost == pytest.approx(there.cost, rel=1e-4)
+    for moved, simulated in zip(fit.segments, there.segments, strict=True):
+        scale = np.linalg.norm(simulated.residual)
+        assert np.linalg.norm(moved.residual - simulated.residual) < 0.01 * scale
+
+
+@pytest.fixture
+def simulated(monkeypatch):
+    """Every simulation there is from now on."""
+    arguments_of_all = []
+    original = Predictor.linearise
+
+    def linearise(self, *arguments):
+        arguments_of_all.append(arguments)
+        return original(self, *arguments)
+
+    monkeypatch.setattr(Predictor, "linearise", linearise)
+    return arguments_of_all
+
+
+def test_a_small_step_costs_a_single_simulation(fitted, simulated):
+    """Information that is good already: the newest segment is evaluated once."""
+    _, fit = fitted
+    information = Information.none(UNKNOWNS.size).plus(fit.equations, fit.values)
+    task = problem(segment(3, seconds=0.5), prior=information)
+    simulated.clear()
+    better = task.solve(fit.values, rounds=3)
+    assert len(simulated) == 1
+    assert better.cost < task.at(fit.values).cost
+
+
+def test_a_large_step_is_not_believed_without_a_simulation():
+    task = problem(segment(4))
+    start = UNKNOWNS.zero()
+    fit = task.solve(start, rounds=1)
+    np.testing.assert_allclose(fit.cost, task.at(fit.values).cost, rtol=1e-9)

@@ -82,3 +82,12 @@ def test_unknowns_that_are_not_fitted_have_no_variance_and_do_not_widen_the_othe
     inner = np.linalg.inv(information.matrix[np.ix_(active, active)])
     assert covariance[np.ix_(active, active)] == pytest.approx(inner)
     assert np.all(covariance.diagonal() <= information.covariance(ALL).diagonal() + 1e-12)
+
+
+def test_a_step_of_the_equations_is_the_same_as_linearising_there():
+    design = designs()[0]
+    data = design @ TRUTH + np.random.default_rng(4).standard_normal(len(design))
+    step = np.array([0.1, -0.3, 0.2, 0.05])
+    moved, there = equations(design, np.zeros(SIZE), data).moved(step), equations(design, step, data)
+    assert moved.score == pytest.approx(there.score)
+    assert moved.cost == pytest.approx(there.cost)

@@ -111,3 +111,23 @@ def test_lines_after_a_lag_are_those_of_the_later_angle():
     expected = np.exp(1j * np.multiply.outer(angle + 0.004 * speed, orders))
     np.testing.assert_allclose(later[:, [0, 1, 4, 5]], expected.real, atol=1e-9)
     np.testing.assert_allclose(later[:, [2, 3, 6, 7]], -expected.imag, atol=1e-9)
+
+
+def test_moving_on_without_a_simulation_is_right_to_second_order():
+    """Half the step, a quarter of the difference from what a simulation there says."""
+    rng = np.random.default_rng(5)
+    values = values_at_random(4)
+    part = segment(3.0 * rng.standard_normal(1200))
+    here = PREDICTOR.linearise(part, values)
+    step = 1e-3 * rng.standard_normal(UNKNOWNS.size) * UNKNOWNS.mask(UNKNOWNS.stiffness, UNKNOWNS.load)
+    differences = []
+    for size in (1.0, 0.5):
+        there = PREDICTOR.linearise(part, values + size * step)
+        moved = here.moved(part, size * step)
+        differences.append(np.linalg.norm(moved.residual - there.residual))
+        # what is measured is the sum of the two, wherever the linearisation stands
+        np.testing.assert_allclose(
+            (moved.predicted + moved.residual)[part.used], (here.predicted + here.residual)[part.used], atol=1e-9
+        )
+    assert differences[0] < 0.05 * np.linalg.norm(here.jacobian @ step)
+    assert differences[0] / differences[1] == pytest.approx(4.0, rel=0.1)

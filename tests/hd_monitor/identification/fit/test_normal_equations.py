@@ -86,3 +86,12 @@ def test_twice_the_noise_is_a_quarter_of_the_information(clean):
     quiet = linearise(item, PREDICTOR, TRUTH, FLOOR).equations
     assert 4.0 * loud.information == pytest.approx(quiet.information)
     assert 4.0 * loud.cost == pytest.approx(quiet.cost)
+
+
+def test_a_small_step_leads_where_looking_anew_leads(clean):
+    step = UNKNOWNS.zero()
+    step[UNKNOWNS.stiffness] = 1e-5
+    moved = at_truth(clean, 1).moved(step)
+    there = linearise(segment(clean + noise(1)), PREDICTOR, TRUTH + step, FLOOR)
+    assert moved.residual == pytest.approx(there.residual, abs=2e-4 * np.abs(there.residual).max())
+    assert moved.equations.cost == pytest.approx(there.equations.cost, rel=1e-6)
