@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from scipy.special import diric
 
 from ..acquisition.record import JointSamples, Record
 from ..arrays import BoolArray, FloatArray
@@ -94,11 +95,7 @@ class JointSegment:
         order = np.asarray(orders, dtype=np.float64)
         columns = line_columns(self.angle, order)
         if self.averaged > 1:
-            half = 0.5 * np.multiply.outer(self.step, order)
-            below = self.averaged * np.sin(half)
-            flat = np.abs(below) < 1e-9
-            gain = np.where(flat, 1.0, np.sin(self.averaged * half) / np.where(flat, 1.0, below))
-            columns *= np.tile(gain, 2)
+            columns *= np.tile(diric(np.multiply.outer(self.step, order), self.averaged), 2)
         return columns
 
 
@@ -178,13 +175,11 @@ class JointSegmentCutter:
 def samples_of_records(records: Iterable[Record]) -> JointSamples:
     """Accelerations in place of the effort, so that records can be cut into segments like joint states."""
     parts = list(records)
-    empty = [np.empty(0)]
-    return JointSamples(
-        times=np.concatenate([part.times for part in parts] or empty),
-        angle=np.concatenate([part.angle for part in parts] or empty),
-        speed=np.concatenate([part.speed for part in parts] or empty),
-        effort=np.concatenate([part.acceleration for part in parts] or empty),
+    times, angle, speed, acceleration = (
+        np.concatenate([np.empty(0), *(getattr(record, name) for record in parts)])
+        for name in ("times", "angle", "speed", "acceleration")
     )
+    return JointSamples(times=times, angle=angle, speed=speed, effort=acceleration)
 
 
 def _speeds(rows: FloatArray) -> FloatArray:
