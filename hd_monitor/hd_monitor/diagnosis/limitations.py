@@ -152,7 +152,6 @@ SENTENCES: Mapping[LimitationCode, str] = {
         f"The signal has a stronger line at about {{order_beside:.0f}} than at {_BOTH_LINES}: check "
         "reducer.flexspline_teeth and reducer.circular_spline_teeth"
     ),
-    LimitationCode.OTHER: "{text}",
 }
 
 

@@ -51,8 +51,6 @@ class LimitationCode(StrEnum):
     LINES_TOO_SIMILAR = "lines_too_similar"
     DIRECTIONS_DISAGREE = "directions_disagree"
     STRONGER_LINE_BESIDE = "stronger_line_beside"
-    # Transitional
-    OTHER = "other"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

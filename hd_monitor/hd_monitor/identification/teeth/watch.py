@@ -6,12 +6,12 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ...model.parameters import Dynamics
-from ...orders.spectrum import OrderSpectrum, with_segment
 from ...reducer import Reducer
 from ..fit.gauss_newton import Fit
 from ..limitation import Limitation
 from .candidates import ToothPair, strongest
 from .ranking import contradiction, rank, shows_two_lines
+from .spectrum import OrderSpectrum, with_segment
 
 FIRST_LOOK = 3.4
 """Motion [s] from which tooth numbers are questioned, and before which nothing is named."""

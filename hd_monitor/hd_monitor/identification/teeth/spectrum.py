@@ -8,13 +8,13 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy import fft
 
-from ..arrays import ComplexArray, FloatArray
-from ..identification.segment.segment import Segment
-from ..identification.segment.torque import own_acceleration
-from ..model.parameters import Dynamics
-from .line_orders import LineOrders
-from .orthonormal import orthonormal
-from .regression import LineFit, Products, solve
+from ...arrays import ComplexArray, FloatArray
+from ...model.parameters import Dynamics
+from ...orders.line_orders import LineOrders
+from ...orders.orthonormal import orthonormal
+from ...orders.regression import LineFit, Products, solve
+from ..segment.segment import Segment
+from ..segment.torque import own_acceleration
 
 TURNS = 2
 """Output revolutions after which the sums start over: half orders, where no line can be, tell lines from tones."""
