@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -13,8 +13,9 @@ from ..errors import HdMonitorError, ParameterError
 from ..model import ParametricModel, StiffnessSeries, Torque
 from ..model.pitch_error import PitchErrors
 from ..model.static_test import StaticTestBed
+from ..parameter import flatten
 from ..settings import PARAMETERS, JointSettings
-from .reading import Reader, merge, read_file
+from .reading import Reader, read_file
 
 PAPER_FILE = "paper.yaml"
 GRAVITY = 9.80665  # m/s² per g
@@ -143,8 +144,9 @@ def load_paper_cases(path: Path | None = None) -> Cases:
     cases = content.pop("cases", None)
     if not isinstance(cases, Mapping):
         raise ParameterError(f"{path} has no `cases`; it is not a file with the paper's cases")
+    common = flatten(content)
     return Cases(
-        {name: _case(f"{path.name}: {name}", merge(content, own or {})) for name, own in cases.items()}, path.name
+        {name: _case(f"{path.name}: {name}", common | flatten(own or {})) for name, own in cases.items()}, path.name
     )
 
 
@@ -192,8 +194,14 @@ def _case(source: str, values: Mapping[str, Any], *, shared: bool = False) -> Ca
         load_order=int(reader.number("torque.load_order", 2)),
         **reader.numbers_below("torque", "load_fluctuation", "load_phase", "drive_fluctuation", "drive_phase"),
     )
-    gear = _pitch_error(reader, reducer.circular_spline_teeth)
-    if gear is not None:
+    gear = None
+    if reader.has("pitch_error"):
+        eccentricity, scatter = (reader.number(f"pitch_error.{name}", 0.0) for name in ("eccentricity", "scatter"))
+        gear = PitchErrorCase(
+            PitchErrors.of_eccentric_gear(reducer.circular_spline_teeth, eccentricity, scatter=scatter),
+            tolerance=reader.number("pitch_error.tolerance", np.inf),
+            sensitivity=reader.number("pitch_error.sensitivity", 0.0),
+        )
         if series["circular_spline"].beta:
             raise ParameterError(f"{source}: give circular_spline.beta or pitch_error, which determines it, not both")
         series["circular_spline"] = gear.errors.stiffness_series(gear.sensitivity)
@@ -207,15 +215,11 @@ def _case(source: str, values: Mapping[str, Any], *, shared: bool = False) -> Ca
         sensor_radius=settings.input.sensor_radius,
         settings=settings,
         speed=reader.number("speed", resonance / 2.0),
-        speeds=Range(*reader.triple("speeds", ("start", "stop", "step"), (top / 30.0, top, top / 30.0))),
-        scales=Range(*reader.triple("scales", ("start", "stop", "step"), (0.0, 4.0, 0.2))),
-        sweep=Sweep(*reader.triple("sweep", ("start", "stop", "rate"), (1.0, 2.2 * fn, 0.6 * (fn / 55.0) ** 2))),
+        speeds=Range(*reader.range("speeds", top / 30.0, top, "step", top / 30.0)),
+        scales=Range(*reader.range("scales", 0.0, 4.0, "step", 0.2)),
+        sweep=Sweep(*reader.range("sweep", 1.0, 2.2 * fn, "rate", 0.6 * (fn / 55.0) ** 2)),
         static_step=np.deg2rad(reader.number("static_test.step", 30.0)),
-        static_test=StaticTestBed(
-            **reader.numbers_below(
-                "static_test", "torque", "force_arm", "dial_arm", "force_resolution", "dial_resolution"
-            )
-        ),
+        static_test=StaticTestBed(**reader.numbers_below("static_test", *(f.name for f in fields(StaticTestBed)))),
         pitch_error=gear,
         ignored=tuple(sorted(reader.left)),
     )
@@ -227,14 +231,3 @@ def _case(source: str, values: Mapping[str, Any], *, shared: bool = False) -> Ca
     if case.speed <= 0.0 or case.speeds.start <= 0.0 or case.sweep.start <= 0.0:
         raise ParameterError(f"{source}: speed, speeds.start and sweep.start must be above 0")
     return case
-
-
-def _pitch_error(reader: Reader, teeth: int) -> PitchErrorCase | None:
-    if not reader.has("pitch_error"):
-        return None
-    errors = PitchErrors.of_eccentric_gear(
-        teeth, reader.number("pitch_error.eccentricity", 0.0), scatter=reader.number("pitch_error.scatter", 0.0)
-    )
-    return PitchErrorCase(
-        errors, reader.number("pitch_error.tolerance", np.inf), reader.number("pitch_error.sensitivity", 0.0)
-    )

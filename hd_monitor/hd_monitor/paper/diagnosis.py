@@ -9,7 +9,7 @@ from ..contract import NANOSECONDS, Block
 from ..errors import HdMonitorError
 from ..monitor import Monitor
 from .cases import Case
-from .records import steady_record
+from .records import REVOLUTIONS, output_frequency, steady_record
 
 SENSOR_NOISE = 0.2
 """Standard deviation of the noise put on the vibration [rad/s²]: 11 mg at 0.55 m, an ordinary MEMS sensor's."""
@@ -20,12 +20,7 @@ _SEED = 2021
 
 
 def diagnose(case: Case) -> Assessment:
-    """Let a monitor that knows the reducer, but none of its defects, watch a steady run at the case's speed.
-
-    Returns
-    -------
-    Assessment
-        The last one.
+    """Return the last assessment of a monitor that watches a steady run and knows none of the case's defects.
 
     Raises
     ------
@@ -33,25 +28,24 @@ def diagnose(case: Case) -> Assessment:
         If the run is too short for an assessment.
     """
     record = steady_record(case.model, case.speed)
-    response = record.response
-    noise = np.random.default_rng(_SEED).normal(0.0, SENSOR_NOISE, response.times.size)
-    samples = response.acceleration + noise
-    period = 1.0 / response.rate
+    noise = np.random.default_rng(_SEED).normal(0.0, SENSOR_NOISE, record.acceleration.size)
+    samples = record.acceleration + noise
+    seconds = (samples.size - 1) / record.rate
     monitor = Monitor("joint", case.settings)
 
-    motion = np.arange(math.floor(response.times[-1] * _MOTION_RATE) + 1) / _MOTION_RATE
-    omega = 2.0 * math.pi * record.output_frequency
-    angle = response.output_angle[0] + omega * motion
+    motion = np.arange(math.floor(seconds * _MOTION_RATE) + 1) / _MOTION_RATE
+    omega = 2.0 * math.pi * output_frequency(record)
+    angle = record.output_angle[0] + omega * motion
     stamps = np.rint(motion * NANOSECONDS).astype(np.int64)
     monitor.add_motion(stamps, angle, np.full(motion.size, omega), np.full(motion.size, np.nan))
     blocks = np.array_split(np.arange(samples.size), max(1, round(motion[-1] * _BLOCKS_PER_SECOND)))
     for number, part in enumerate(blocks):
-        start = round(float(response.times[part[0]]) * NANOSECONDS)
-        monitor.add_block(Block(start, period, number, samples[part]))
+        start = round(float(part[0]) / record.rate * NANOSECONDS)
+        monitor.add_block(Block(start, 1.0 / record.rate, number, samples[part]))
     assessment = monitor.finish()
     if assessment is None:
         raise HdMonitorError(
-            f"{record.revolutions} output revolutions at {case.speed:g} rpm last {response.times[-1]:.2f} s, too "
+            f"{REVOLUTIONS} output revolutions at {case.speed:g} rpm last {seconds:.2f} s, too "
             "short for the monitor; choose a lower speed"
         )
     return assessment

@@ -1,19 +1,20 @@
 """Figures 9 and 14: the combined harmonic groups that a load fluctuation raises around the bi-spectra."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
-from ..arrays import FloatArray
 from ..model import ParametricModel
+from ..model.simulation import TimeResponse
 from ..orders.zoom import Zoom
 from . import printed
 from .cases import Case, Cases
 from .exhibit import Claim, Curve, Exhibit, Mark, Panel
 from .line_figures import MICRO, spectrum_panel
-from .records import REVOLUTIONS, SteadyRecord, steady_record
+from .records import REVOLUTIONS, amplitude, output_frequency, steady_record
 
 PRESENT = 0.01
 """Part of a group's largest line from which another line of it counts as present."""
@@ -25,9 +26,8 @@ GROUP_2_PRINTED = {"4ωo2 − 2ωo1": (4, -2), "2ωo2": (2, 0), "2ωo1": (0, 2),
 GROUP_2 = {"3ωo2 − ωo1": (3, -1), "2ωo2": (2, 0), "ωo1 + ωo2": (1, 1), "2ωo1": (0, 2), "3ωo1 − ωo2": (-1, 3)}
 
 
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Line:
-    """A line of a group: its name, frequency [Hz] and amplitude with and without the load's fluctuation."""
+class Line(NamedTuple):
+    """A line of a group: its name, frequency [Hz], and amplitude of θ [rad] with and without the load's fluctuation."""
 
     name: str
     frequency: float
@@ -35,51 +35,47 @@ class Line:
     unloaded: float
 
 
-def group_lines(
-    model: ParametricModel, loaded: SteadyRecord, unloaded: SteadyRecord, names: dict[str, tuple[int, int]]
-) -> tuple[Line, ...]:
-    """Amplitudes of θ [rad] of the named combination lines, with and without load fluctuation, by frequency."""
-    orders = {name: float(np.dot(factors, model.reducer.output_orders)) for name, factors in names.items()}
-    return tuple(
-        Line(
-            name=name,
-            frequency=orders[name] * loaded.output_frequency,
-            amplitude=loaded.amplitude(loaded.response.displacement, orders[name]),
-            unloaded=unloaded.amplitude(unloaded.response.displacement, orders[name]),
-        )
-        for name in sorted(orders, key=orders.__getitem__)
-    )
-
-
 def without_fluctuation(model: ParametricModel) -> ParametricModel:
     """Return the model under its mean torque alone."""
     return replace(model, torque=replace(model.torque, load_fluctuation=0.0, drive_fluctuation=0.0))
 
 
-def group_panel(lines: tuple[Line, ...], loaded: SteadyRecord, unloaded: SteadyRecord, title: str) -> Panel:
+def record_pair(case: Case) -> tuple[TimeResponse, TimeResponse]:
+    """Simulate a case with and without the load's fluctuation."""
+    return steady_record(case.model, case.speed), steady_record(without_fluctuation(case.model), case.speed)
+
+
+def group_lines(
+    model: ParametricModel, records: tuple[TimeResponse, TimeResponse], names: dict[str, tuple[int, int]]
+) -> tuple[Line, ...]:
+    """Read the named combination lines off the records with and without load fluctuation, by frequency."""
+    orders = sorted((float(np.dot(factors, model.reducer.output_orders)), name) for name, factors in names.items())
+    return tuple(
+        Line(name, order * output_frequency(records[0]), *(amplitude(r.displacement, order) for r in records))
+        for order, name in orders
+    )
+
+
+def group_panel(lines: tuple[Line, ...], records: tuple[TimeResponse, TimeResponse], title: str) -> Panel:
     """Draw a group with and without the load's fluctuation, on a logarithmic scale that shows the small lines."""
     spacing = min(b.frequency - a.frequency for a, b in pairwise(lines))
     low, high = lines[0].frequency - 1.6 * spacing, lines[-1].frequency + 1.6 * spacing
-    (x, y), (plain_x, plain_y) = (_zoom(r, r.response.displacement * MICRO, low, high) for r in (loaded, unloaded))
-    top = max(float(y.max()), float(plain_y.max()))
+    zoom = Zoom(records[0].displacement.size, 1.0 / records[0].rate, low, high, 400)
+    loaded, unloaded = (zoom(record.displacement * MICRO) for record in records)
+    top = float(max(loaded.max(), unloaded.max()))
     return Panel(
         title=title,
         x_label="frequency (Hz)",
         y_label="amplitude (µrad)",
         curves=(
-            Curve(x=x, y=y, label="with load fluctuation"),
-            Curve(x=plain_x, y=plain_y, label="without", style="dashed"),
+            Curve(x=zoom.frequencies, y=loaded, label="with load fluctuation"),
+            Curve(x=zoom.frequencies, y=unloaded, label="without", style="dashed"),
         ),
         marks=tuple(Mark(at=line.frequency, label=line.name) for line in lines),
         log_y=True,
         x_range=(low, high),
         y_range=(1e-4 * top, 60.0 * top),
     )
-
-
-def _zoom(record: SteadyRecord, values: FloatArray, low: float, high: float) -> tuple[FloatArray, FloatArray]:
-    zoom = Zoom(values.size, 1.0 / record.response.rate, low, high, 400)
-    return zoom.frequencies, zoom(values)
 
 
 def _table(lines: tuple[Line, ...]) -> str:
@@ -96,19 +92,14 @@ def _are_present(lines: Iterable[Line], group: tuple[Line, ...]) -> bool:
     return min(x.amplitude for x in lines) > PRESENT * max(x.amplitude for x in group)
 
 
-def _records(case: Case) -> tuple[SteadyRecord, SteadyRecord]:
-    """Simulate a case with and without the load's fluctuation."""
-    return steady_record(case.model, case.speed), steady_record(without_fluctuation(case.model), case.speed)
-
-
 def figure_9(cases: Cases) -> Exhibit:
     """The combined harmonic groups under Table 1's defects and a fluctuating load."""
     case = cases["combined_groups"]
     model = case.model
-    loaded, unloaded = _records(case)
-    first = group_lines(model, loaded, unloaded, GROUP_1)
-    second = group_lines(model, loaded, unloaded, GROUP_2)
-    as_printed = group_lines(model, loaded, unloaded, GROUP_2_PRINTED)
+    records = record_pair(case)
+    first = group_lines(model, records, GROUP_1)
+    second = group_lines(model, records, GROUP_2)
+    as_printed = group_lines(model, records, GROUP_2_PRINTED)
     outer = (as_printed[0].amplitude, as_printed[-1].amplitude)
     new = (second[0], second[2], second[-1])
     inner = [line.amplitude for line in new]
@@ -122,11 +113,11 @@ def figure_9(cases: Cases) -> Exhibit:
         f"per output revolution, {case.speed:g} rpm; displacement, {REVOLUTIONS} output revolutions, Hann window.",
         panels=(
             spectrum_panel(
-                loaded.response.displacement * MICRO, loaded.response.rate, unit="µrad", top=1.25 * 3 * pair.flexspline,
+                records[0].displacement * MICRO, records[0].rate, unit="µrad", top=1.25 * 3 * pair.flexspline,
                 bottom=0.2 * pair.circular_spline, title="Spectrum of θ, above the load's own line",
             ),
-            group_panel(first, loaded, unloaded, "First group"),
-            group_panel(second, loaded, unloaded, "Second group"),
+            group_panel(first, records, "First group"),
+            group_panel(second, records, "Second group"),
         ),
         claims=(
             Claim(
@@ -168,8 +159,8 @@ def figure_14(cases: Cases) -> Exhibit:
     """The combined group on the rig with its asymmetric inertia, at the printed lower line."""
     case = cases["rig_loaded"]
     model = case.model
-    loaded, unloaded = _records(case)
-    lines = group_lines(model, loaded, unloaded, GROUP_1)
+    records = record_pair(case)
+    lines = group_lines(model, records, GROUP_1)
     ratio = model.reducer.circular_spline_teeth / model.reducer.flexspline_teeth
     values = sorted(printed.LOADED_LINES.values())
     printed_ratio = values[2] / values[1]
@@ -179,7 +170,7 @@ def figure_14(cases: Cases) -> Exhibit:
         title="Combined harmonic group in torsional vibration",
         caption=f"The rig at {case.speed:g} rpm with a load fluctuation of {model.torque.load_fluctuation:g} N·m, "
         f"{model.torque.load_order} per output revolution.",
-        panels=(group_panel(lines, loaded, unloaded, "Zoom spectrum of θ"),),
+        panels=(group_panel(lines, records, "Zoom spectrum of θ"),),
         claims=(
             Claim(
                 statement="The group 2ωo2 − ωo1, ωo2, ωo1, 2ωo1 − ωo2 can be seen, evenly spaced",

@@ -1,4 +1,4 @@
-"""Figure 8 and equation 5: the bi-spectra, their places and what they say of the defects."""
+"""Figure 8, equation 5 and Table 1: the bi-spectra, their places and the defects recovered from them."""
 
 from dataclasses import replace
 
@@ -6,23 +6,26 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..model import ParametricModel, StiffnessSeries, steady_state
+from ..model.simulation import TimeResponse
 from ..orders.zoom import Zoom, zoom_spectrum
-from ..reducer import LinePair
 from . import printed
 from .cases import Case, Cases
+from .diagnosis import SENSOR_NOISE, diagnose
 from .exhibit import Claim, Curve, Exhibit, Mark, Panel
-from .records import REVOLUTIONS, SteadyRecord, local_maxima, spectrum, steady_record
+from .records import REVOLUTIONS, amplitude, line_heights, local_maxima, output_frequency, spectrum, steady_record
 
 UNEVEN = 3.7
 """Output revolutions of a stretch in which no line completes a whole number of cycles together with the others."""
 
 MICRO = 1e6
 
+_LARGEST_ERROR = 0.001  # of the mean stiffness, in an identified index
 
-def zoom_panel(case: Case, record: SteadyRecord, values: FloatArray, *, k: int, unit: str) -> Panel:
+
+def zoom_panel(case: Case, record: TimeResponse, values: FloatArray, *, k: int, unit: str) -> Panel:
     """Draw the zoom spectrum around the k-th pair, its lines marked by the paper's names."""
     pair = case.model.reducer.line_frequencies(case.speed, k)
-    zoom = zoom_spectrum(values, 1.0 / record.response.rate, around=pair, k=k, bins=400)
+    zoom = zoom_spectrum(values, 1.0 / record.rate, around=pair, k=k, bins=400)
     times = "" if k == 1 else f"{k}"
     return Panel(
         title=f"Zoom, k = {k}",
@@ -53,9 +56,9 @@ def spectrum_panel(
     )
 
 
-def peak_near(record: SteadyRecord, values: FloatArray, frequency: float, threshold: float) -> float:
+def peak_near(record: TimeResponse, values: FloatArray, frequency: float, threshold: float) -> float:
     """Frequency [Hz] of the spectrum's local maximum nearest to `frequency`; NaN if none is above `threshold`."""
-    whole = spectrum(values, record.response.rate)
+    whole = spectrum(values, record.rate)
     tops = local_maxima(whole.amplitude)
     found = whole.frequencies[tops[whole.amplitude[tops] > threshold]]
     return float(found[np.abs(found - frequency).argmin()]) if found.size else float("nan")
@@ -66,21 +69,15 @@ def harmonics_of(model: ParametricModel) -> range:
     return range(1, max(len(model.flexspline.beta), len(model.circular_spline.beta), 1) + 1)
 
 
-def bispectra_panels(case: Case, record: SteadyRecord) -> tuple[Panel, ...]:
+def bispectra_panels(case: Case, record: TimeResponse) -> tuple[Panel, ...]:
     """Draw figure 8: the spectrum of the simulated displacement, and its pairs."""
-    values = record.response.displacement * MICRO
+    values = record.displacement * MICRO
     ks = harmonics_of(case.model)
     top = 1.25 * case.model.reducer.line_frequencies(case.speed, ks[-1]).flexspline
     return (
-        spectrum_panel(values, record.response.rate, unit="µrad", top=top, title="Spectrum of θ"),
+        spectrum_panel(values, record.rate, unit="µrad", top=top, title="Spectrum of θ"),
         *(zoom_panel(case, record, values, k=k, unit="µrad") for k in ks),
     )
-
-
-def _heights(model: ParametricModel, speed: float) -> LinePair:
-    """Amplitudes of the first pair's displacement [rad] at a speed [rpm]."""
-    record = steady_record(model, speed)
-    return LinePair(*(record.amplitude(record.response.displacement, order) for order in model.reducer.output_orders))
 
 
 def figure_8(cases: Cases) -> Exhibit:
@@ -88,22 +85,22 @@ def figure_8(cases: Cases) -> Exhibit:
     case = cases["table_1"]
     model, reducer = case.model, case.model.reducer
     record = steady_record(model, case.speed)
-    values = record.response.displacement
-    bin_width = record.output_frequency / REVOLUTIONS
+    values = record.displacement
+    bin_width = output_frequency(record) / REVOLUTIONS
     pairs = [reducer.line_frequencies(case.speed, k) for k in harmonics_of(model)]
-    threshold = 1e-3 * max(record.amplitude(values, order) for order in reducer.output_orders)
+    threshold = 1e-3 * max(line_heights(model, values))
     found = [[peak_near(record, values, line, threshold) for line in pair] for pair in pairs]
     at_home = bool((np.abs(np.subtract(found, pairs)) < bin_width).all())
     state = steady_state(model, case.speed)
     balance = [
-        (abs(state.acceleration_phasor(k * order)), record.amplitude(record.response.acceleration, k * order))
+        (abs(state.acceleration_phasor(k * order)), amplitude(record.acceleration, k * order))
         for k in harmonics_of(model)
         for order in reducer.output_orders
     ]
     error = max(abs(a - b) for a, b in balance) / max(b for _, b in balance)
     first = pairs[0]
-    left = _heights(replace(model, flexspline=StiffnessSeries()), case.speed)
-    right = _heights(replace(model, circular_spline=StiffnessSeries()), case.speed)
+    alone = replace(model, flexspline=StiffnessSeries()), replace(model, circular_spline=StiffnessSeries())
+    left, right = (line_heights(one, steady_record(one, case.speed).displacement) for one in alone)
     left_only, right_only = left.circular_spline / left.flexspline, right.flexspline / right.circular_spline
     return Exhibit(
         title="The bi-spectra in the spectrum of forced parametric vibration",
@@ -140,15 +137,14 @@ def figure_8(cases: Cases) -> Exhibit:
     )
 
 
-def line_distance(record: SteadyRecord, left_order: float, right_order: float) -> float:
+def line_distance(record: TimeResponse, left_order: float, right_order: float) -> float:
     """Distance [Hz] of the tops of two lines in a zoom spectrum, of a stretch that fits no line on purpose."""
-    response = record.response
-    count = round(UNEVEN / record.revolutions * response.times.size)
+    count = round(UNEVEN / REVOLUTIONS * record.acceleration.size)
     tops = []
     for order in (left_order, right_order):
-        low, high = ((order + shift) * record.output_frequency for shift in (-0.9, 0.9))
-        zoom = Zoom(count, 1.0 / response.rate, low, high, 361)
-        tops.append(float(zoom.frequencies[zoom(response.acceleration[:count]).argmax()]))
+        low, high = ((order + shift) * output_frequency(record) for shift in (-0.9, 0.9))
+        zoom = Zoom(count, 1.0 / record.rate, low, high, 361)
+        tops.append(float(zoom.frequencies[zoom(record.acceleration[:count]).argmax()]))
     return tops[1] - tops[0]
 
 
@@ -187,4 +183,50 @@ def equation_5(cases: Cases) -> Exhibit:
             )
             for k, distances in zip(harmonics, measured, strict=True)
         ),
+    )
+
+
+def table_1(cases: Cases) -> Exhibit:
+    """Let the monitor identify Table 1's indexes from acceleration and angle."""
+    case = cases["table_1"]
+    assessment = diagnose(case)
+    found = assessment.identification
+    claims, curves, identified = [], [], []
+    for row, (name, values) in enumerate(printed.TABLE_1.items(), start=1):
+        phasors = np.zeros(0) if found is None else getattr(found, name)
+        measured = np.abs(phasors)[: len(values)]
+        ok = measured.size == len(values) and float(np.abs(measured - values).max()) < _LARGEST_ERROR
+        part = name.replace("_", " ")
+        symbols = ", ".join(f"β{row}{k}" for k in range(1, len(values) + 1))
+        claims.append(
+            Claim(
+                statement=f"{symbols} ({part}), identified from the vibration",
+                paper=", ".join(f"{v:g}" for v in values),
+                ours=", ".join(f"{v:.4f}" for v in measured) or "nothing identified",
+                passed=ok,
+                note=f"The monitor knows teeth, fn, ζ, J and M0 and nothing of the indexes; sensor noise "
+                f"{SENSOR_NOISE:g} rad/s².",
+            )
+        )
+        places = np.arange(1.0, len(values) + 1.0) + 0.06 * (2 * row - 3)
+        curves.append(Curve(x=places, y=np.asarray(values), label=f"{part}, printed", style="stems"))
+        if measured.size == len(values):
+            identified.append((places, measured))
+    x, y = np.concatenate(identified, axis=1) if identified else np.empty((2, 0))
+    curves.append(Curve(x=x, y=y, label="identified", style="points"))
+    return Exhibit(
+        title="Index values of the stiffness fluctuation",
+        caption=f"Simulated at {case.speed:g} rpm, identified by the monitor from acceleration and joint angle.",
+        panels=(
+            Panel(
+                title="Table 1",
+                x_label="harmonic",
+                y_label="index β",
+                curves=tuple(curves),
+                x_step=1.0,
+                x_range=(0.5, 3.5),
+                y_range=(0.0, 0.075),
+            ),
+        ),
+        claims=tuple(claims),
     )

@@ -8,12 +8,10 @@ from ..model import growth_rate, line_pairs
 from .cases import Case
 from .exhibit import Exhibit
 from .line_figures import bispectra_panels
-from .phase_figure import phase_panels
-from .property_figures import curve_panel, property_curve
 from .records import REVOLUTIONS, steady_record
 from .reproduction import Entry
-from .rig_figures import beat_panel, resonance_speed
-from .stability_figure import chart_panel
+from .rig_figures import beat_panel, phase_panels
+from .speed_figures import chart_panel, curve_panel, property_curve, resonance_speed
 from .stiffness_figures import static_measurement, static_panel, stiffness_panels
 from .sweep_figures import sweep_panel, sweep_response
 
@@ -52,7 +50,7 @@ def static(case: Case) -> Exhibit:
         title="Static torsional stiffness",
         caption=f"Virtual test bed, {case.static_test.torque:g} N·m.",
         panels=(static_panel(case, measured, "Static stiffness"),),
-        facts=(("index Δ/Kav", f"{measured.fit.index:.2%}"), ("Kav", f"{measured.fit.mean:,.0f} N·m/rad")),
+        facts=(("index Δ/Kav", f"{measured.index:.2%}"), ("Kav", f"{measured.mean:,.0f} N·m/rad")),
     )
 
 
@@ -75,7 +73,7 @@ def sweep(case: Case) -> Exhibit:
     return Exhibit(
         title="Envelope of a sweep",
         caption=f"ωo2/2π from {case.sweep.start:g} to {case.sweep.stop:g} Hz at {case.sweep.rate:.3g} Hz/s.",
-        panels=(sweep_panel(case, sweep_response(case), "Sweep"),),
+        panels=(sweep_panel(sweep_response(case), "Sweep"),),
     )
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from .exhibit import Exhibit, Outcome
+from .exhibit import Exhibit
 from .table import summary
 
 PAGE = "index.html"
@@ -24,7 +24,6 @@ def page(exhibits: Mapping[str, Exhibit], pictures: Mapping[str, bytes], *, head
         claims=any(exhibit.claims for exhibit in exhibits.values()),
         summary=summary(exhibits.values()),
         pictures={name: base64.b64encode(data).decode("ascii") for name, data in pictures.items()},
-        classes={Outcome.PASS: "pass", Outcome.FAIL: "fail", Outcome.CONTRADICTION: "contradiction"},
     )
 
 

@@ -24,15 +24,6 @@ def read_file(path: Path) -> dict[str, Any]:
     return dict(content)
 
 
-def merge(base: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
-    """Return `base` with the values of `over` in it, group by group."""
-    merged = dict(base)
-    for key, value in over.items():
-        old = merged.get(key)
-        merged[key] = merge(old, value) if isinstance(old, Mapping) and isinstance(value, Mapping) else value
-    return merged
-
-
 class Reader:
     """Takes values out of a flat mapping by their dotted names; leftover names can then be refused."""
 
@@ -62,15 +53,16 @@ class Reader:
             raise ParameterError(f"{self.source}: {name} = {value!r} has an entry that is not a number")
         return tuple(float(v) for v in value)
 
-    def triple(self, name: str, parts: tuple[str, str, str], default: tuple[float, float, float]) -> tuple[float, ...]:
-        """Take a range of three numbers, refused if empty or endless."""
-        first, last, step = (self.number(f"{name}.{p}", d) for p, d in zip(parts, default, strict=True))
-        if not (first <= last and step > 0.0):
+    def range(self, name: str, start: float, stop: float, last: str, step: float) -> tuple[float, float, float]:
+        """Take start, stop and the step or rate named `last`, refused if empty or endless; given are the defaults."""
+        start, stop = self.number(f"{name}.start", start), self.number(f"{name}.stop", stop)
+        step = self.number(f"{name}.{last}", step)
+        if not (start <= stop and step > 0.0):
             raise ParameterError(
-                f"{self.source}: {name} from {first:g} to {last:g} by {step:g} is empty or endless; "
-                f"{parts[1]} must not be below {parts[0]}, and {parts[2]} must be above 0"
+                f"{self.source}: {name} from {start:g} to {stop:g} by {step:g} is empty or endless; "
+                f"stop must not be below start, and {last} must be above 0"
             )
-        return first, last, step
+        return start, stop, step
 
     def has(self, prefix: str) -> bool:
         """Whether something below `prefix` is left."""

@@ -9,8 +9,8 @@ from .cases import Case, Cases, PitchErrorCase
 from .diagnosis import diagnose, verdict_words
 from .exhibit import Claim, Curve, Exhibit, Mark, Panel
 from .line_figures import zoom_panel
-from .property_figures import PropertyCurve, curve_panel, property_curve
-from .records import steady_record
+from .records import line_heights, steady_record
+from .speed_figures import PropertyCurve, curve_panel, property_curve
 from .stiffness_figures import ANGLE_LABEL, static_measurement, static_panel
 
 HALF_TOLERANCE = 0.1
@@ -33,7 +33,7 @@ def _is_half(ratio: float) -> bool:
 
 def _figure_18(title: str, case: Case, curve: PropertyCurve, top: float, *claims: Claim) -> Exhibit:
     record = steady_record(case.model, case.speed)
-    zoom = zoom_panel(case, record, case.in_g(record.response.acceleration), k=1, unit="g")
+    zoom = zoom_panel(case, record, case.in_g(record.acceleration), k=1, unit="g")
     return Exhibit(
         title=title,
         caption=f"A driver with fn = {case.model.dynamics.natural_frequency:g} Hz; RMS at {case.sensor_radius:g} "
@@ -54,8 +54,8 @@ def figure_18a(cases: Cases) -> Exhibit:
     curve = property_curve(case)
     peak_speed, peak = curve.highest
     record = steady_record(case.model, case.speed)
-    values = case.in_g(record.response.acceleration)
-    left, right = (record.amplitude(values, order) for order in case.model.reducer.output_orders)
+    values = case.in_g(record.acceleration)
+    left, right = line_heights(case.model, values)
     before = diagnose(case)
     return _figure_18(
         "Property curve, original case",
@@ -183,8 +183,8 @@ def figure_20(cases: Cases) -> Exhibit:
     """Static stiffness before and after the change."""
     samples = cases["sample_before"], cases["sample_after"]
     measured = [static_measurement(case) for case in samples]
-    before, after = (m.fit.index for m in measured)
-    readings = np.concatenate([m.stiffness for m in measured])
+    before, after = (m.index for m in measured)
+    readings = np.concatenate([m.readings for m in measured])
     low, high, margin = float(readings.min()), float(readings.max()), 0.35 * float(np.ptp(readings))
     panels = [static_panel(case, m, title) for case, m, title in zip(samples, measured, _TITLES, strict=True)]
     return Exhibit(

@@ -9,6 +9,7 @@ from scipy.signal import periodogram
 from ..arrays import FloatArray, IntArray
 from ..model import ParametricModel
 from ..model.simulation import TimeResponse, constant_speed, simulate
+from ..reducer import LinePair
 
 REVOLUTIONS = 4
 """Of the output, in every record: the lines of pair k = 1 are then 8 bins apart."""
@@ -27,18 +28,20 @@ class Spectrum(NamedTuple):
     amplitude: FloatArray
 
 
-class SteadyRecord(NamedTuple):
-    """A steady response over a whole number of output revolutions."""
+def output_frequency(record: TimeResponse) -> float:
+    """Output revolutions per second [Hz] in a steady record."""
+    return REVOLUTIONS * record.rate / record.output_angle.size
 
-    response: TimeResponse
-    revolutions: int
-    output_frequency: float
-    """Output revolutions per second [Hz]."""
 
-    def amplitude(self, values: FloatArray, order: float) -> float:
-        """Peak amplitude of `values` at a whole number of cycles per output revolution (exact: it is a bin)."""
-        cycles = np.arange(values.size) * (order * self.revolutions / values.size)
-        return float(abs(2.0 / values.size * (values * np.exp(-2j * np.pi * cycles)).sum()))
+def amplitude(values: FloatArray, order: float) -> float:
+    """Peak amplitude of a steady record's `values` at a whole number of cycles per output revolution (it is a bin)."""
+    cycles = np.arange(values.size) * (order * REVOLUTIONS / values.size)
+    return float(abs(2.0 * np.mean(values * np.exp(-2j * np.pi * cycles))))
+
+
+def line_heights(model: ParametricModel, values: FloatArray, k: int = 1) -> LinePair:
+    """Peak amplitudes of a steady record's `values` at the k-th pair of lines."""
+    return LinePair(*(amplitude(values, k * order) for order in model.reducer.output_orders))
 
 
 def sampling_rate(model: ParametricModel, speed_rpm: float) -> float:
@@ -48,17 +51,16 @@ def sampling_rate(model: ParametricModel, speed_rpm: float) -> float:
     return max(_STEPS_PER_RADIAN * model.dynamics.angular_frequency, _SAMPLES_PER_CYCLE * fastest)
 
 
-def steady_record(model: ParametricModel, speed_rpm: float, revolutions: int = REVOLUTIONS) -> SteadyRecord:
-    """Simulate a constant speed [rpm] and keep `revolutions` of the output after the transient."""
-    revolution = 60.0 * model.reducer.reduction / speed_rpm
-    duration = revolutions * revolution
+def steady_record(model: ParametricModel, speed_rpm: float) -> TimeResponse:
+    """Simulate a constant speed [rpm] and keep `REVOLUTIONS` of the output after the transient."""
+    duration = REVOLUTIONS * 60.0 * model.reducer.reduction / speed_rpm
     cs, fs = (round(order) for order in model.reducer.output_orders)
-    periods = revolutions * math.gcd(cs, fs)  # common ones of both lines; each gets a whole number of samples
+    periods = REVOLUTIONS * math.gcd(cs, fs)  # common ones of both lines; each gets a whole number of samples
     rate = periods * math.ceil(duration / periods * sampling_rate(model, speed_rpm)) / duration
     settling = SETTLING_TIME_CONSTANTS / (model.dynamics.damping_ratio * model.dynamics.angular_frequency)
     settled = math.ceil(settling * rate) / rate
-    whole = simulate(model, constant_speed(model.reducer, speed_rpm), duration=settled + duration, rate=rate)
-    return SteadyRecord(whole.after(settled), revolutions, 1.0 / revolution)
+    motion = constant_speed(model.reducer, speed_rpm)
+    return simulate(model, motion, duration=settled + duration, rate=rate).after(settled)
 
 
 def spectrum(values: FloatArray, rate: float) -> Spectrum:

@@ -8,14 +8,11 @@ from ..errors import ParameterError
 from . import (
     group_figures,
     line_figures,
-    phase_figure,
-    property_figures,
     reassembly_figures,
     rig_figures,
-    stability_figure,
+    speed_figures,
     stiffness_figures,
     sweep_figures,
-    table_1,
 )
 from .cases import Cases
 from .exhibit import Exhibit, Outcome
@@ -32,7 +29,7 @@ class Entry[Given](NamedTuple):
 EXHIBITS: tuple[Entry[Cases], ...] = (
     Entry("F4", "stiffness over the wave-generator angle", stiffness_figures.figure_4),
     Entry("F7", "static stiffness every 30°", stiffness_figures.figure_7),
-    Entry("T1", "Table 1 recovered from vibration", table_1.table_1),
+    Entry("T1", "Table 1 recovered from vibration", line_figures.table_1),
     Entry("F8", "bi-spectra", line_figures.figure_8),
     Entry("E5", "distance of the two lines", line_figures.equation_5),
     Entry("F9", "combined harmonic groups", group_figures.figure_9),
@@ -46,13 +43,13 @@ EXHIBITS: tuple[Entry[Cases], ...] = (
     Entry("F13c", "zoom spectrum at 850 rpm", rig_figures.figure_13c),
     Entry("F14", "combined group on the rig", group_figures.figure_14),
     Entry("F15", "spectrum at 1700 rpm", rig_figures.figure_15),
-    Entry("F16", "property curve of the rig", property_figures.figure_16),
-    Entry("F17", "phase trace at 850 rpm", phase_figure.figure_17),
+    Entry("F16", "property curve of the rig", speed_figures.figure_16),
+    Entry("F17", "phase trace at 850 rpm", rig_figures.figure_17),
     Entry("F18a", "property curve and verdict before", reassembly_figures.figure_18a),
     Entry("F18b", "property curve and verdict after", reassembly_figures.figure_18b),
     Entry("F19", "pitch errors before and after", reassembly_figures.figure_19),
     Entry("F20", "stiffness fluctuation before and after", reassembly_figures.figure_20),
-    Entry("ST", "stability chart", stability_figure.stability),
+    Entry("ST", "stability chart", speed_figures.stability),
 )
 
 

@@ -1,19 +1,20 @@
-"""Figures 13 and 15: the test rig's sensor signal at one speed."""
+"""Figures 13, 15 and 17: the test rig's vibration at one speed."""
 
-from dataclasses import dataclass
+from collections.abc import Iterable
+from typing import NamedTuple
 
 import numpy as np
 from scipy.signal import hilbert
 
 from ..arrays import FloatArray
 from ..model import line_pairs
-from ..reducer import LinePair
+from ..model.simulation import TimeResponse
 from . import printed
 from .cases import Case, Cases
 from .diagnosis import diagnose, verdict_words
-from .exhibit import Claim, Curve, Exhibit, Mark, Panel
+from .exhibit import Claim, Curve, Exhibit, Panel, Style
 from .line_figures import spectrum_panel, zoom_panel
-from .records import REVOLUTIONS, SteadyRecord, spectrum, steady_record
+from .records import REVOLUTIONS, line_heights, output_frequency, spectrum, steady_record
 
 _PAIRS = 4
 _SHOWN = 4.0  # s of the time history
@@ -25,8 +26,7 @@ def strongest_pair(case: Case, speed: float) -> int:
     return int(np.argmax(strength)) + 1
 
 
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Beat:
+class Beat(NamedTuple):
     """Envelope of a vibration: its frequency of rise and fall [Hz] and its depth (largest - smallest)/(sum)."""
 
     envelope: FloatArray
@@ -47,12 +47,12 @@ def beat(values: FloatArray, rate: float) -> Beat:
     )
 
 
-def beat_panel(case: Case, record: SteadyRecord) -> Panel:
+def beat_panel(case: Case, record: TimeResponse) -> Panel:
     """Draw the time history as figure 13a does."""
-    values = case.in_g(record.response.acceleration)
-    measured = beat(values, record.response.rate)
-    part = record.response.times <= _SHOWN
-    times, label = record.response.times[part], f"envelope, beat {measured.frequency:.3f} Hz"
+    values = case.in_g(record.acceleration)
+    measured = beat(values, record.rate)
+    part = record.times <= _SHOWN
+    times, label = record.times[part], f"envelope, beat {measured.frequency:.3f} Hz"
     return Panel(
         title="Time history",
         x_label="time (s)",
@@ -67,7 +67,7 @@ def figure_13a(cases: Cases) -> Exhibit:
     record = steady_record(case.model, case.speed)
     k = strongest_pair(case, case.speed)
     separation = case.model.reducer.line_separation(case.speed, k)
-    measured = beat(record.response.acceleration, record.response.rate)
+    measured = beat(record.acceleration, record.rate)
     return Exhibit(
         title=f"Time history of torsional vibration at {case.speed:g} rpm",
         caption=f"Tangential acceleration at {case.sensor_radius:g} m.",
@@ -78,16 +78,16 @@ def figure_13a(cases: Cases) -> Exhibit:
                 paper="obvious beat (no number)",
                 ours=f"envelope at {measured.frequency:.4f} Hz (Δf of pair {k}: {separation:.4f} Hz), depth "
                 f"{measured.depth:.0%}",
-                passed=abs(measured.frequency - separation) < record.output_frequency / REVOLUTIONS
+                passed=abs(measured.frequency - separation) < output_frequency(record) / REVOLUTIONS
                 and measured.depth > 0.1,
             ),
         ),
     )
 
 
-def resonance_claim(case: Case, record: SteadyRecord, speed: float, label: printed.Printed, multiple: int) -> Claim:
+def resonance_claim(case: Case, record: TimeResponse, speed: float, label: printed.Printed, multiple: int) -> Claim:
     """Find the dominant pair's k, where the paper's label of the dominant component counts shaft cycles."""
-    whole = spectrum(record.response.acceleration, record.response.rate)
+    whole = spectrum(record.acceleration, record.rate)
     dominant = float(whole.frequencies[whole.amplitude.argmax()])
     k = strongest_pair(case, speed)
     pair = case.model.reducer.line_frequencies(speed, k)
@@ -97,7 +97,7 @@ def resonance_claim(case: Case, record: SteadyRecord, speed: float, label: print
         statement=f"Dominant component at {speed:g} rpm, close to the resonance",
         paper=str(label),
         ours=f"k = {k}: {pair.circular_spline:.2f} and {pair.flexspline:.2f} Hz, the larger at {dominant:.2f} Hz",
-        passed=min(abs(dominant - line) for line in pair) < record.output_frequency
+        passed=min(abs(dominant - line) for line in pair) < output_frequency(record)
         and abs(pair.circular_spline - of_shaft) < 1e-6
         and abs(pair.circular_spline - fn) < 0.1 * fn,
         contradiction=True,
@@ -106,13 +106,13 @@ def resonance_claim(case: Case, record: SteadyRecord, speed: float, label: print
     )
 
 
-def _spectrum(title: str, case: Case, record: SteadyRecord, top: float, *claims: Claim) -> Exhibit:
+def _spectrum(title: str, case: Case, record: TimeResponse, top: float, *claims: Claim) -> Exhibit:
     """Show the spectrum of the sensor's signal up to `top` [Hz]."""
-    values = case.in_g(record.response.acceleration)
+    values = case.in_g(record.acceleration)
     return Exhibit(
         title=title,
         caption=f"Tangential acceleration at {case.sensor_radius:g} m, {REVOLUTIONS} output revolutions, Hann window.",
-        panels=(spectrum_panel(values, record.response.rate, unit="g", top=top),),
+        panels=(spectrum_panel(values, record.rate, unit="g", top=top),),
         claims=claims,
     )
 
@@ -141,9 +141,9 @@ def figure_13c(cases: Cases) -> Exhibit:
     case = cases["rig"]
     model = case.model
     record = steady_record(model, case.speed)
-    values = case.in_g(record.response.acceleration)
+    values = case.in_g(record.acceleration)
     k = strongest_pair(case, case.speed)
-    heights = LinePair(*(record.amplitude(values, k * order) for order in model.reducer.output_orders))
+    heights = line_heights(model, values, k)
     left, right = (abs(model.dynamics.receptance(f)) * f**2 for f in model.reducer.line_frequencies(case.speed, k))
     diagnosis = diagnose(case)
     return Exhibit(
@@ -182,14 +182,83 @@ def figure_15(cases: Cases) -> Exhibit:
     return _spectrum(title, case, record, top, claim)
 
 
-def resonance_speed(case: Case) -> float:
-    """Wave-generator speed [rpm] at which ωo2 meets fn."""
-    return 60.0 * case.model.dynamics.natural_frequency / case.model.reducer.circular_spline_order
+class Quasiperiodicity(NamedTuple):
+    """How a steady vibration repeats."""
+
+    stroboscopic_spread: float
+    """Standard deviation of the states (θ, θ'/ωn) caught once per circular-spline period, over that of all states: 0
+    for a motion of that one period."""
+    closing_error: float
+    """Largest distance of the state after the lines' common period over the size of the motion: 0 if it comes back."""
+    lattice_power: float
+    """Part of the acceleration's power in lines p·ωo1 + q·ωo2."""
 
 
-def resonance_marks(case: Case) -> tuple[Mark, ...]:
-    """Mark the speeds at which ωo2 meets fn/k, and 2fn."""
-    return tuple(
-        Mark(at=resonance_speed(case) * times, label=label)
-        for times, label in ((1 / 3, "fn/3"), (0.5, "fn/2"), (1.0, "fn"), (2.0, "2 fn"))
+def _strobe(case: Case, record: TimeResponse, rows: Iterable[FloatArray]) -> FloatArray:
+    """Catch the rows once per circular-spline period, over one output revolution."""
+    cs = case.model.reducer.output_orders.circular_spline
+    times = np.arange(0.0, cs) / (cs * output_frequency(record))
+    return np.stack([np.interp(times, record.times, row) for row in rows])
+
+
+def quasiperiodicity(case: Case, record: TimeResponse) -> Quasiperiodicity:
+    """Measure a record over at least two output revolutions."""
+    states = np.stack([record.displacement, record.velocity / case.model.dynamics.angular_frequency])
+    size = float(np.sqrt(states.var(axis=1).sum()))
+    caught = _strobe(case, record, states)
+    cs, fs = case.model.reducer.output_orders
+    common = round(fs - cs)  # times per output revolution
+    period = record.displacement.size // (REVOLUTIONS * common)
+    back = states[:, period : 2 * period] - states[:, :period]
+    power = np.abs(np.fft.rfft(record.acceleration)) ** 2
+    return Quasiperiodicity(
+        stroboscopic_spread=float(np.sqrt(caught.var(axis=1).sum())) / size,
+        closing_error=float(np.abs(back).max()) / size,
+        lattice_power=float(power[:: common * REVOLUTIONS].sum() / power.sum()),
+    )
+
+
+def phase_panels(case: Case, record: TimeResponse) -> tuple[Panel, ...]:
+    """Draw the phase trace as figure 17 does, and the states caught once per circular-spline period.
+
+    The trace covers half an output revolution, the common period of both lines. The states caught make a closed curve
+    if the motion is quasi-periodic, else one point.
+    """
+    states = record.displacement, record.velocity
+    half = record.displacement.size // REVOLUTIONS // 2
+    caught = _strobe(case, record, states)
+    return (
+        _phase_panel("Phase trace, half an output revolution", states[0][:half], states[1][:half], "fine"),
+        _phase_panel("Caught once per circular-spline period", caught[0], caught[1], "points"),
+    )
+
+
+def _phase_panel(title: str, displacement: FloatArray, velocity: FloatArray, style: Style) -> Panel:
+    curve = Curve(x=displacement * 1e3, y=velocity, style=style)
+    return Panel(
+        title=title, x_label="displacement θ (mrad)", y_label="velocity θ' (rad/s)", curves=(curve,), equal=True
+    )
+
+
+def figure_17(cases: Cases) -> Exhibit:
+    """Phase trace at 850 rpm."""
+    case = cases["rig"]
+    record = steady_record(case.model, case.speed)
+    measured = quasiperiodicity(case, record)
+    return Exhibit(
+        title=f"Phase trace at {case.speed:g} rpm",
+        caption="Simulated displacement and velocity in the steady state.",
+        panels=phase_panels(case, record),
+        claims=(
+            Claim(
+                statement="The trace is quasi-periodic",
+                paper="of quasi periodicity",
+                ours="not of one period (states caught once per period spread over "
+                f"{measured.stroboscopic_spread:.2f} of the motion), but all power is in lines p·ωo1 + q·ωo2 "
+                f"except {abs(1.0 - measured.lattice_power):.0e} of it",
+                passed=measured.stroboscopic_spread > 0.05 and measured.lattice_power > 0.999,
+                note="With whole teeth the two frequencies have a common period, 40 wave-generator revolutions "
+                f"for 160/162: after it the trace closes to {measured.closing_error:.0e} of its size.",
+            ),
+        ),
     )

@@ -6,13 +6,13 @@ import pytest
 
 from hd_monitor.model import StiffnessSeries
 from hd_monitor.paper.exhibit import Outcome
-from hd_monitor.paper.phase_figure import figure_17, quasiperiodicity
 from hd_monitor.paper.records import steady_record
+from hd_monitor.paper.rig_figures import figure_17, quasiperiodicity
 
 
 def test_figure_17_is_quasi_periodic_and_closes_after_40_wave_generator_revolutions(cases):
     case = cases["rig"]
-    measured = quasiperiodicity(case, steady_record(case.model, case.speed, 4))
+    measured = quasiperiodicity(case, steady_record(case.model, case.speed))
     assert measured.stroboscopic_spread > 0.5
     assert measured.closing_error < 1e-6
     assert measured.lattice_power == pytest.approx(1.0, abs=1e-9)

@@ -5,8 +5,8 @@ import pytest
 from hd_monitor.diagnosis.verdict import Component
 from hd_monitor.paper.diagnosis import diagnose
 from hd_monitor.paper.exhibit import Outcome
-from hd_monitor.paper.property_figures import property_curve
 from hd_monitor.paper.reassembly_figures import figure_18a, figure_18b, figure_19, figure_20
+from hd_monitor.paper.speed_figures import property_curve
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ import pytest
 
 from hd_monitor.paper.cases import Range
 from hd_monitor.paper.exhibit import Outcome
-from hd_monitor.paper.stability_figure import chart_panel, principal_threshold, stability
+from hd_monitor.paper.speed_figures import chart_panel, principal_threshold, stability
 
 
 @pytest.mark.parametrize("zeta", [0.01, 0.023, 0.027])

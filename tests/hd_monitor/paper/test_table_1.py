@@ -8,7 +8,7 @@ from hd_monitor.model import StiffnessSeries
 from hd_monitor.paper import printed
 from hd_monitor.paper.diagnosis import diagnose
 from hd_monitor.paper.exhibit import Outcome
-from hd_monitor.paper.table_1 import table_1
+from hd_monitor.paper.line_figures import table_1
 
 
 def test_the_case_is_the_printed_table(cases):
