@@ -7,7 +7,7 @@ spoil the batch.
 """
 
 from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -193,37 +193,3 @@ def decode_multi_arrays(messages: Sequence[bytes]) -> tuple[list[MultiArrays], l
         for place, rows, (dimensions, offset) in groups_of(messages, _parse_multi_array, faults)
     ]
     return groups, sorted(faults)
-
-
-_PARSERS: dict[str, Callable[[bytes], Layout[Any]]] = {
-    "geometry_msgs/msg/AccelStamped": _parse_vectors,
-    "geometry_msgs/msg/WrenchStamped": _parse_vectors,
-    "sensor_msgs/msg/Imu": _parse_imu,
-    "sensor_msgs/msg/JointState": _parse_joint_state,
-    "std_msgs/msg/Float64MultiArray": _parse_multi_array,
-}
-
-
-def record_layout(message: bytes, message_type: str) -> np.dtype[np.void]:
-    """Structured type of a serialised message, by which many messages like it are written at once.
-
-    Parameters
-    ----------
-    message : bytes
-        One such message, with its 4-byte CDR header.
-    message_type : str
-        One of ``geometry_msgs/msg/AccelStamped``, ``geometry_msgs/msg/WrenchStamped``, ``sensor_msgs/msg/Imu``,
-        ``sensor_msgs/msg/JointState``, ``std_msgs/msg/Float64MultiArray``.
-
-    Returns
-    -------
-    dtype
-        With the fields ``seconds`` and ``nanoseconds`` of the stamp, and the vectors' and arrays' names (``linear``,
-        ``angular``; ``position``, ``velocity``, ``effort``; ``data``).
-
-    Raises
-    ------
-    LayoutError
-        If the message is not of that type.
-    """
-    return _PARSERS[message_type](message).record

@@ -14,7 +14,7 @@ from hd_monitor import contract
 from hd_monitor.contract import NANOSECONDS
 from hd_monitor.errors import HdMonitorError
 
-from .encoding import MESSAGE_TYPES, Encoder, Library
+from .encoding import MESSAGE_TYPES, encode
 from .settings import RigSettings
 from .simulation import Simulation
 
@@ -22,7 +22,6 @@ STORAGES = {"mcap": StoragePlugin.MCAP, "sqlite3": StoragePlugin.SQLITE3}
 COMPRESSIONS = {"none": CompressionMode.NONE, "file": CompressionMode.FILE, "message": CompressionMode.MESSAGE}
 
 _STORE = get_typestore(Stores.ROS2_JAZZY)
-_ROSBAGS = Library(lambda kind, **fields: _STORE.types[kind](**fields), _STORE.serialize_cdr)
 _FOREVER = QosTime(sec=9_223_372_036, nsec=854_775_807)
 _QOS = Qos(
     QosHistory.KEEP_LAST,
@@ -132,8 +131,7 @@ def _with_an_end(rig: RigSettings) -> RigSettings:
 
 def _serialised(simulation: Simulation, epoch: int, names: Mapping[str, str]) -> Iterator[tuple[int, str, str, bytes]]:
     """Yield (due [ns] since the start, topic in the bag, message type, message) in the order of going out."""
-    encoder = Encoder(simulation.settings, _ROSBAGS)
     for stretch in simulation:
-        encoded = encoder.encode(stretch, epoch)
+        encoded = encode(stretch, simulation.settings, epoch)
         for due, topic, row in stretch.schedule():
             yield due, names[topic], MESSAGE_TYPES[topic], encoded[topic][row]

@@ -1,7 +1,5 @@
 """What an IMU on the output link measures: its axes, the rotation and gravity."""
 
-from typing import NamedTuple
-
 import numpy as np
 
 from hd_monitor.arrays import FloatArray
@@ -14,18 +12,9 @@ STANDARD_GRAVITY = 9.80665
 _AXES = "xyz"
 
 
-class ImuBatch(NamedTuple):
-    """Readings of an IMU, one row a sample."""
-
-    linear_acceleration: FloatArray
-    """Specific force [m/s²], shape (samples, 3)."""
-    angular_velocity: FloatArray
-    """[rad/s], shape (samples, 3)."""
-
-
 def imu_readings(
     motion: RigChunk, samples: FloatArray, *, radius: float, axis: str, surroundings: Surroundings
-) -> ImuBatch:
+) -> tuple[FloatArray, FloatArray]:
     """Readings of an IMU at `radius` [m] from the joint's axis.
 
     Parameters
@@ -39,6 +28,11 @@ def imu_readings(
         joint's axis and the remaining one points outwards, so that for y these are z and x.
     surroundings : Surroundings
         With a gravity torque the joint's axis is horizontal and the tangential axis feels gravity; else it is vertical.
+
+    Returns
+    -------
+    force, turning : ndarray, shape (samples, 3)
+        Specific force [m/s²] and angular velocity [rad/s].
     """
     sign = -1.0 if axis.startswith("-") else 1.0
     tangential = _AXES.index(axis[-1])
@@ -57,4 +51,4 @@ def imu_readings(
     force[:, tangential] *= sign
     force[:, along] *= sign
     turning[:, along] *= sign
-    return ImuBatch(force, turning)
+    return force, turning

@@ -3,6 +3,7 @@
 import time
 from collections.abc import Callable, Sequence
 from functools import lru_cache
+from importlib import import_module
 from typing import Any
 
 from rcl_interfaces.msg import SetParametersResult
@@ -16,9 +17,8 @@ from hd_monitor.ros.declaration import answer, declare, describe
 from hd_monitor.ros.managed_node import ManagedNode, logged, run
 from hd_monitor.ros.queue import queue_depth
 
-from .encoding import MESSAGE_TYPES, Encoder
+from .encoding import MESSAGE_TYPES, encode
 from .parameters import CHANGEABLE, NODE_PARAMETERS, PARAMETERS
-from .ros_library import ROS, message_class
 from .settings import RigSettings, pick
 from .simulation import Simulation, Stretch, check_stability
 from .stream import Stream
@@ -119,9 +119,10 @@ class HdSimNode(ManagedNode):
         scale = self.get_parameter("time_scale").value
         self._stream = Stream(self._simulation, scale)
         seconds = self.get_parameter("queue_seconds").value
-        self._encode = lru_cache(maxsize=1)(Encoder(settings, ROS).encode)
+        self._encode = lru_cache(maxsize=1)(lambda stretch, epoch: encode(stretch, settings, epoch))
         for topic in self._simulation.topics:
-            kind = message_class(MESSAGE_TYPES[topic])
+            package, _, name = MESSAGE_TYPES[topic].split("/")
+            kind = getattr(import_module(f"{package}.msg"), name)
             depth = queue_depth(scale * self._simulation.message_rate(topic), seconds)
             self._outlets[topic] = self.create_lifecycle_publisher(kind, topic, QoSProfile(depth=depth))
         return super().on_configure(state)
