@@ -99,7 +99,8 @@ def _serialise(columns: list[Column]) -> list[bytes]:
     names = [f"field {number}" for number in range(len(columns))]
     formats = [(column.dtype.newbyteorder("<"), column.shape[1:]) for column in columns]
     record = np.dtype({"names": names, "formats": formats, "offsets": offsets, "itemsize": end})
-    messages = np.zeros(max(map(len, columns)), dtype=record)
+    (count,) = np.broadcast_shapes(*(column.shape[:1] for column in columns))
+    messages = np.zeros(count, dtype=record)
     for name, column in zip(names, columns, strict=True):
         messages[name] = column
     data = messages.tobytes()

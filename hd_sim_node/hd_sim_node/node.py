@@ -20,7 +20,8 @@ from hd_monitor.ros.queue import queue_depth
 from .encoding import MESSAGE_TYPES, encode
 from .parameters import CHANGEABLE, NODE_PARAMETERS, PARAMETERS
 from .settings import RigSettings, pick
-from .simulation import Simulation, Stretch, check_stability
+from .simulation import Simulation, Stretch
+from .stability import check_stability
 from .stream import Stream
 
 NAME = "hd_sim_node"

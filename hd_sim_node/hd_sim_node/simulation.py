@@ -1,20 +1,21 @@
 """The whole rig as a stream of messages, as arrays: motion, sensor, joint and transport, a stretch at a time."""
 
+import heapq
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-
-import numpy as np
+from itertools import repeat
+from operator import itemgetter
 
 from hd_monitor import contract
 from hd_monitor.arrays import FloatArray, IntArray
 from hd_monitor.contract import Block
-from hd_monitor.errors import ParameterError
 
 from .encoder import Joint, JointBatch
 from .rig import Rig, RigChunk
 from .sensor import Accelerometer, nanoseconds
 from .settings import RigSettings
-from .stability import describe, unstable_speeds
+from .stability import check_stability
 from .transport import Dispatch, Transport, TransportSettings
 
 _STRETCH = 0.25  # s of simulated time in one stretch, or one block if that is longer
@@ -47,14 +48,9 @@ class Stretch:
     dispatch: dict[str, Dispatch]
 
     def schedule(self) -> Iterator[tuple[int, str, int]]:
-        """Yield (due [ns], topic, row) of every message in the order of going out."""
-        topics = list(self.dispatch)
-        due = np.concatenate([self.dispatch[topic].due for topic in topics])
-        row = np.concatenate([self.dispatch[topic].row for topic in topics])
-        which = np.repeat(np.arange(len(topics)), [self.dispatch[topic].due.size for topic in topics])
-        order = np.argsort(due, kind="stable")
-        for when, topic, index in zip(due[order].tolist(), which[order].tolist(), row[order].tolist(), strict=True):
-            yield when, topics[topic], index
+        """Iterate over (due [ns], topic, row) of every message in the order of going out."""
+        rows = (zip(due.tolist(), repeat(topic), row.tolist()) for topic, (due, row) in self.dispatch.items())
+        return heapq.merge(*rows, key=itemgetter(0))
 
 
 class Simulation:
@@ -71,6 +67,8 @@ class Simulation:
 
     Attributes
     ----------
+    settings : RigSettings
+        Settings in force.
     warning : str
         The warning of ``unstable: warn``, or empty.
 
@@ -83,7 +81,7 @@ class Simulation:
 
     def __init__(self, settings: RigSettings) -> None:
         self.warning = check_stability(settings)
-        self._settings = settings
+        self.settings = settings
         general, rate, seed = settings.general, settings.mounting.rate, settings.general.seed
         self._rig = Rig(
             settings.model,
@@ -104,26 +102,20 @@ class Simulation:
         self._transports = {t: Transport(settings.transport, seed=seed, topic=t) for t in published if published[t]}
         loss = TransportSettings(loss=settings.joint.loss)
         self._transports[contract.JOINT_STATES] = Transport(loss, seed=seed, topic=contract.JOINT_STATES)
-        blocks = max(1, round(_STRETCH * rate / self._block_size))
-        self._count = blocks * self._block_size
-        total = settings.duration * rate
+        self._stretch = max(1, round(_STRETCH * rate / self._block_size))  # in blocks
         # Whole blocks, at least one; rounding must not cost the last one.
-        self._left = max(1, int(total / self._block_size + 1e-9)) if total < np.inf else None
+        total = settings.duration * rate / self._block_size
+        self._left = max(1, int(total + 1e-9)) if math.isfinite(total) else math.inf
 
     @property
     def topics(self) -> tuple[str, ...]:
         """Topics published."""
         return tuple(self._transports)
 
-    @property
-    def settings(self) -> RigSettings:
-        """Settings in force."""
-        return self._settings
-
     def message_rate(self, topic: str) -> float:
         """Messages per simulated second on a topic."""
         if topic == contract.JOINT_STATES:
-            return self._settings.joint.rate
+            return self.settings.joint.rate
         return self._rig.rate / (self._block_size if topic == contract.TORSIONAL_ACCELERATION_BLOCK else 1)
 
     def change(self, settings: RigSettings) -> None:
@@ -137,7 +129,7 @@ class Simulation:
             If vibration would grow without bound, as at the start; nothing is changed then.
         """
         self.warning = check_stability(settings)
-        self._settings = settings
+        self.settings = settings
         self._rig.model = settings.model
         self._rig.surroundings = settings.surroundings
         self._accelerometer.settings = settings.sensor
@@ -147,20 +139,16 @@ class Simulation:
                 transport.settings = settings.transport
 
     def __iter__(self) -> Iterator[Stretch]:
-        """Yield the stretches until the programme or `duration` ends."""
-        while (stretch := self.advance()) is not None:
-            yield stretch
+        """Iterate over the stretches until the programme or `duration` ends."""
+        return iter(self.advance, None)
 
     def advance(self) -> Stretch | None:
         """Simulate the next stretch; None at the end."""
-        count = self._count
-        if self._left is not None:
-            whole = min(count // self._block_size, self._left)
-            if not whole:
-                return None
-            self._left -= whole
-            count = whole * self._block_size
-        motion = self._rig.advance(count)
+        if not self._left:
+            return None
+        blocks = int(min(self._stretch, self._left))
+        self._left -= blocks
+        motion = self._rig.advance(blocks * self._block_size)
         samples, stamps = self._accelerometer.measure(motion), self._accelerometer.stamps(motion)
         joint = self._joint.report(motion)
         instants = nanoseconds(motion.times)
@@ -186,25 +174,3 @@ class Simulation:
             Block(stamp, 1.0 / self._rig.rate, first + number, row)
             for number, (stamp, row) in enumerate(zip(stamps[::size].tolist(), samples.reshape(-1, size), strict=True))
         )
-
-
-def check_stability(settings: RigSettings) -> str:
-    """Search the programme for speeds at which vibration grows without bound, unless ``unstable`` is ``ignore``.
-
-    Returns
-    -------
-    str
-        The warning; empty if there is none.
-
-    Raises
-    ------
-    ParameterError
-        If ``unstable`` is ``refuse``.
-    """
-    if settings.general.unstable == "ignore":
-        return ""
-    found = unstable_speeds(settings.model, settings.programme)
-    warning = describe(found) if found else ""
-    if warning and settings.general.unstable == "refuse":
-        raise ParameterError(warning)
-    return warning

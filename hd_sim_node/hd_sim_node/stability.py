@@ -3,9 +3,11 @@
 from collections.abc import Iterable
 from typing import NamedTuple
 
+from hd_monitor.errors import ParameterError
 from hd_monitor.model import ParametricModel, growth_rate
 
 from .programme import SpeedProgramme
+from .settings import RigSettings
 
 _DEEPEST_TONGUE = 4  # at 2 fn / m with m above it, damping outweighs any stiffness fluctuation that a gear can have
 
@@ -19,12 +21,13 @@ class UnstableSpeed(NamedTuple):
 
 def unstable_speeds(model: ParametricModel, programme: SpeedProgramme) -> list[UnstableSpeed]:
     """Speeds of the programme at which the model is parametrically unstable (Floquet), in rising order."""
-    found = []
-    for speed in _worth_a_look(model, programme.visited_speeds().tolist()):
-        rate = growth_rate(model, speed)
-        if rate > 0.0:
-            found.append(UnstableSpeed(speed, rate))
-    return found
+    harmonics = max(len(model.circular_spline.beta), len(model.flexspline.beta))
+    highest = harmonics * model.reducer.flexspline_order / 60.0  # Hz per rpm
+    # Speeds whose highest stiffness harmonic stays below the tongues are left out: their periods take long to compute.
+    lowest = 0.8 * 2.0 * model.dynamics.natural_frequency / _DEEPEST_TONGUE
+    speeds = [speed for speed in programme.visited_speeds().tolist() if speed * highest >= lowest]
+    found = [UnstableSpeed(speed, growth_rate(model, speed)) for speed in speeds]
+    return [speed for speed in found if speed.growth_rate > 0.0]
 
 
 def describe(unstable: Iterable[UnstableSpeed]) -> str:
@@ -39,11 +42,23 @@ def describe(unstable: Iterable[UnstableSpeed]) -> str:
     )
 
 
-def _worth_a_look(model: ParametricModel, speeds: list[float]) -> list[float]:
-    """Drop speeds whose highest stiffness harmonic stays below the tongues: their periods take long to compute."""
-    harmonics = max(len(model.circular_spline.beta), len(model.flexspline.beta))
-    if not harmonics:
-        return []
-    orders_per_second = harmonics * model.reducer.flexspline_order / 60.0
-    lowest = 2.0 * model.dynamics.natural_frequency / _DEEPEST_TONGUE / orders_per_second
-    return [speed for speed in speeds if speed >= 0.8 * lowest]
+def check_stability(settings: RigSettings) -> str:
+    """Search the programme for speeds at which vibration grows without bound, unless ``unstable`` is ``ignore``.
+
+    Returns
+    -------
+    str
+        The warning; empty if there is none.
+
+    Raises
+    ------
+    ParameterError
+        If ``unstable`` is ``refuse``.
+    """
+    if settings.general.unstable == "ignore":
+        return ""
+    found = unstable_speeds(settings.model, settings.programme)
+    warning = describe(found) if found else ""
+    if warning and settings.general.unstable == "refuse":
+        raise ParameterError(warning)
+    return warning

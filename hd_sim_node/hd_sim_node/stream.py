@@ -27,11 +27,12 @@ class Stream:
     """
 
     def __init__(self, simulation: Simulation, scale: float) -> None:
-        self._simulation = simulation
         self._scale = scale
         self._anchor = (0.0, 0)  # clock [s] and simulated time [ns] from which the pace counts
         self._sent = 0  # simulated time [ns] of the newest message
-        self._messages = self._unroll()
+        self._messages = (
+            (due, stretch, topic, row) for stretch in simulation for due, topic, row in stretch.schedule()
+        )
         self._waiting: tuple[int, Stretch, str, int] | None = None
         self.epoch = 0
         self.running = False
@@ -85,8 +86,3 @@ class Stream:
     def _target(self, clock: float) -> int:
         start, simulated = self._anchor
         return simulated + round((clock - start) * self._scale * NANOSECONDS)
-
-    def _unroll(self) -> Iterator[tuple[int, Stretch, str, int]]:
-        for stretch in self._simulation:
-            for due, topic, row in stretch.schedule():
-                yield due, stretch, topic, row

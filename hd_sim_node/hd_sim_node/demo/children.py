@@ -6,7 +6,7 @@ import sys
 import tempfile
 from collections.abc import Mapping
 from contextlib import suppress
-from typing import IO, NamedTuple, Self
+from typing import IO, Self
 
 from hd_monitor.errors import HdMonitorError
 
@@ -16,12 +16,6 @@ PATIENCE = 5.0
 
 class DemoError(HdMonitorError):
     """A process ended although it was still needed, or the monitor has stopped reporting."""
-
-
-class _Child(NamedTuple):
-    name: str
-    process: subprocess.Popen[bytes]
-    output: IO[bytes]
 
 
 class Children:
@@ -34,8 +28,8 @@ class Children:
     """
 
     def __init__(self, environment: Mapping[str, str]) -> None:
-        self._environment = dict(environment)
-        self._children: list[_Child] = []
+        self._environment = environment
+        self._children: dict[str, tuple[subprocess.Popen[bytes], IO[bytes]]] = {}
 
     def __enter__(self) -> Self:
         """Start with none."""
@@ -44,14 +38,13 @@ class Children:
     def __exit__(self, *error: object) -> None:
         """Interrupt all, wait, and force those that do not end."""
         for request in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL):
-            running = [child.process for child in self._children if child.process.poll() is None]
-            for process in running:
-                process.send_signal(request)
-            for process in running:
+            for process, _ in self._children.values():
+                process.send_signal(request)  # does nothing where the process has ended
+            for process, _ in self._children.values():
                 with suppress(subprocess.TimeoutExpired):
                     process.wait(PATIENCE)
-        for child in self._children:
-            child.output.close()
+        for _, output in self._children.values():
+            output.close()
 
     def start(self, name: str, module: str, *arguments: str) -> int:
         """Start ``python -m module arguments…``, called `name` in messages, and return its process number."""
@@ -65,7 +58,7 @@ class Children:
             stderr=subprocess.STDOUT,
             start_new_session=True,
         )
-        self._children.append(_Child(name, process, output))
+        self._children[name] = process, output
         return process.pid
 
     def check(self) -> None:
@@ -76,7 +69,7 @@ class Children:
         DemoError
             With the process's own output.
         """
-        for name, process, output in self._children:
+        for name, (process, output) in self._children.items():
             status = process.poll()
             if status is not None:
                 output.seek(0)

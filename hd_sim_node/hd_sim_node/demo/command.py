@@ -12,7 +12,7 @@ from hd_monitor.diagnosis.verdict import FaultCode
 
 from ..defects import DEFECTS
 from .children import Children, DemoError
-from .listener import Listener
+from .listener import Listen, listening
 from .plan import Plan
 from .screen import Screen, View
 
@@ -72,13 +72,13 @@ def run(arguments: argparse.Namespace) -> int:
             screen.line(f"hd_sim_node      {plan.description}  (process {rig})")
             screen.line(f"hd_monitor_node  watches it over DDS, ROS_DOMAIN_ID={plan.domain}  (process {monitor})")
             screen.line()
-            with Listener(plan.domain) as listener:
-                right = _conclude(plan, screen, _follow(plan, children, screen, listener))
+            with listening(plan.domain) as listen:
+                right = _conclude(plan, screen, _follow(plan, children, screen, listen))
                 if arguments.stay:
                     screen.line(f"Both nodes keep running in ROS_DOMAIN_ID={plan.domain}; Ctrl+C ends them.")
                 while arguments.stay:
                     children.check()
-                    if (view := listener.listen(0.2)) is not None:
+                    if (view := listen(0.2)) is not None:
                         screen.update(view, 1.0)
         return 0 if right else FAILED
     except DemoError as error:
@@ -92,12 +92,12 @@ def _interrupt(number: int, frame: Any) -> None:
     raise KeyboardInterrupt
 
 
-def _follow(plan: Plan, children: Children, screen: Screen, listener: Listener) -> View:
+def _follow(plan: Plan, children: Children, screen: Screen, listen: Listen) -> View:
     """Show what the monitor says until the simulated time is over; return its last status."""
     said, best, moved = "no status", 0.0, time.monotonic()
     while time.monotonic() - moved <= PATIENCE:
         children.check()
-        view = listener.listen(0.2)
+        view = listen(0.2)
         if view is None:
             continue
         if view.values.get("fault_code") == FaultCode.INTERNAL_ERROR:

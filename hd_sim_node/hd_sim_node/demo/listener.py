@@ -1,6 +1,7 @@
 """The demo's ear: a node of its own that subscribes to the monitor's statuses."""
 
-from typing import Self
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
@@ -15,48 +16,37 @@ from hd_monitor.diagnosis.verdict import Level
 
 from .screen import View
 
+Listen = Callable[[float], View | None]
+"""Returns the next status; None if there is none within so many seconds."""
 
-class Listener:
-    """Receives the reducer's status in a ROS domain, within a ``with`` block.
 
-    Parameters
-    ----------
-    domain : int
-        ROS_DOMAIN_ID.
-    """
+@contextmanager
+def listening(domain: int) -> Iterator[Listen]:
+    """Receive the reducer's status in the ROS domain with this ROS_DOMAIN_ID, within a ``with`` block."""
+    context = Context()
+    # No arguments: rclpy would take NAME:=VALUE from the command line for remappings.
+    rclpy.init(args=[], context=context, domain_id=domain, signal_handler_options=SignalHandlerOptions.NO)
+    node = Node("hd_demo", context=context)
+    executor = SingleThreadedExecutor(context=context)
+    executor.add_node(node)
+    views: list[View] = []
 
-    def __init__(self, domain: int) -> None:
-        self._context = Context()
-        # No arguments: rclpy would take NAME:=VALUE from the command line for remappings.
-        rclpy.init(args=[], context=self._context, domain_id=domain, signal_handler_options=SignalHandlerOptions.NO)
-        self._node = Node("hd_demo", context=self._context)
-        self._executor = SingleThreadedExecutor(context=self._context)
-        self._executor.add_node(self._node)
-        self._node.create_subscription(DiagnosticArray, contract.DIAGNOSTICS, self._receive, QoSProfile(depth=100))
-        self._view: View | None = None
-
-    def __enter__(self) -> Self:
-        """Listen from now on."""
-        return self
-
-    def __exit__(self, *error: object) -> None:
-        """Leave the graph."""
-        self._executor.shutdown()
-        self._node.destroy_node()
-        self._context.try_shutdown()
-
-    def listen(self, seconds: float) -> View | None:
-        """Return the next status; None if there is none within `seconds`."""
-        self._view = None
-        self._executor.spin_once(timeout_sec=seconds)
-        return self._view
-
-    def _receive(self, message: DiagnosticArray) -> None:
+    def receive(message: DiagnosticArray) -> None:
         for status in message.status:
             if status.name.endswith(" reducer"):
-                self._view = View(
-                    name=status.name,
-                    level=Level(int.from_bytes(status.level, "little")),
-                    message=status.message,
-                    values={pair.key: pair.value for pair in status.values},
-                )
+                level = Level(int.from_bytes(status.level, "little"))
+                values = {pair.key: pair.value for pair in status.values}
+                views.append(View(name=status.name, level=level, message=status.message, values=values))
+
+    def listen(seconds: float) -> View | None:
+        views.clear()
+        executor.spin_once(timeout_sec=seconds)
+        return views[-1] if views else None
+
+    node.create_subscription(DiagnosticArray, contract.DIAGNOSTICS, receive, QoSProfile(depth=100))
+    try:
+        yield listen
+    finally:
+        executor.shutdown()
+        node.destroy_node()
+        context.try_shutdown()

@@ -2,6 +2,8 @@
 
 import argparse
 import math
+import random
+import socket
 from collections.abc import Sequence
 
 from hd_monitor.diagnosis import name_component
@@ -12,11 +14,15 @@ from hd_monitor.settings import split_joints
 
 from ..parameters import NODE_PARAMETERS
 from ..settings import RigSettings, pick
-from .domain import LAST_DOMAIN, free_domain
 from .screen import View
 
 INPUT_TIMEOUT = 3.0
 """Seconds of real time after which the monitor counts an input as lost."""
+
+DOMAINS = range(1, 102)  # above them, DDS ports run into the system's ephemeral ones
+LAST_DOMAIN = 232
+"""The highest ROS_DOMAIN_ID."""
+_FIRST_PORT, _PORTS_PER_DOMAIN = 7410, 250  # of a domain's first participant, by the DDS standard
 
 
 class Plan:
@@ -92,3 +98,24 @@ class Plan:
 
 def _command_line(parameters: Sequence[str]) -> tuple[str, ...]:
     return ("--ros-args", *(word for parameter in parameters for word in ("-p", parameter)))
+
+
+def free_domain() -> int:
+    """Find a ROS_DOMAIN_ID without a DDS participant on this machine.
+
+    The first participant of a domain binds a UDP port that follows from the domain's number, so a port that can be
+    bound means a domain that is free.
+
+    Raises
+    ------
+    ParameterError
+        If every domain is in use.
+    """
+    for domain in random.sample(DOMAINS, len(DOMAINS)):
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+            try:
+                probe.bind(("", _FIRST_PORT + _PORTS_PER_DOMAIN * domain))
+            except OSError:
+                continue
+            return domain
+    raise ParameterError("every ROS_DOMAIN_ID seems to be in use on this machine; give one with --domain")

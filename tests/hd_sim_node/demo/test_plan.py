@@ -7,7 +7,7 @@ pytestmark = pytest.mark.ros
 
 
 def test_free_domains_are_free(peer: Any) -> None:
-    from hd_sim_node.demo.domain import free_domain
+    from hd_sim_node.demo.plan import free_domain
 
     mine = int(os.environ["ROS_DOMAIN_ID"])
     domains = {free_domain() for _ in range(50)}
