@@ -76,32 +76,27 @@ class Inputs:
 
     def _add_motion(self, messages: Sequence[bytes]) -> None:
         groups, faults = cdr.decode_joint_states(messages)
-        total = len(messages)
-        columns = [self._column(group.names) for group in groups]
-        mine = np.zeros(total, dtype=np.bool_)
-        stamps = np.zeros(total, dtype=np.int64)
-        values = np.empty((3, total))
-        for group, column in zip(groups, columns, strict=True):
+        mine = np.zeros(len(messages), dtype=np.bool_)
+        stamps = np.zeros(len(messages), dtype=np.int64)
+        values = np.empty((3, len(messages)))
+        strangers: list[Fault] = []
+        for group in groups:
+            column = self._column(group.names)
             if column is not None:
                 mine[group.place] = True
                 stamps[group.place] = group.stamps
                 for row, array in zip(values, (group.position, group.velocity, group.effort), strict=True):
                     row[group.place] = array[:, column]
+            elif not self._joint_seen:
+                strangers += [Fault(place, self._absent(group.names)) for place in group.place.tolist()]
         # Several publishers may share the topic, each with its own joints. Messages without the joint are a fault only
         # until it is first seen, since its name may be misspelt.
-        first = int(np.flatnonzero(mine)[0]) if mine.any() else total
-        strangers = [
-            Fault(place, self._absent(group.names))
-            for group, column in zip(groups, columns, strict=True)
-            if column is None and not self._joint_seen
-            for place in group.place.tolist()
-            if place < first
-        ]
-        for fault in sorted(faults + strangers):
+        first = int(mine.argmax()) if mine.any() else len(messages)
+        for fault in sorted(faults + [stranger for stranger in strangers if stranger.place < first]):
             self._sink.reject(fault.reason)
         if mine.any():
             self._joint_seen = True
-            self._sink.add_motion(stamps[mine], values[0][mine], values[1][mine], values[2][mine])
+            self._sink.add_motion(stamps[mine], *values[:, mine])
 
     def _column(self, names: tuple[str, ...]) -> int | None:
         wanted = self._wanted or self._joint

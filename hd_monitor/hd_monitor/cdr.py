@@ -70,23 +70,19 @@ def _doubles(values: npt.NDArray[np.void]) -> FloatArray:
 def _parse_vectors(message: bytes) -> Layout[None]:
     template = Template(message)
     template.stamp()
-    template.field("linear", "f8", 3)
-    template.field("angular", "f8", 3)
+    template.doubles("linear", 3)
+    template.doubles("angular", 3)
     return template.layout(None)
 
 
 def _parse_imu(message: bytes) -> Layout[None]:
     template = Template(message)
     template.stamp()
-    for name, values in (
-        ("orientation", 4),
-        ("orientation_covariance", 9),
-        ("angular", 3),
-        ("angular_covariance", 9),
-        ("linear", 3),
-        ("linear_covariance", 9),
-    ):
-        template.field(name, "f8", values)
+    template.doubles("orientation, covariance", 4 + 9)
+    template.doubles("angular", 3)
+    template.doubles("angular covariance", 9)
+    template.doubles("linear", 3)
+    template.doubles("linear covariance", 9)
     return template.layout(None)
 
 
@@ -103,7 +99,7 @@ def _parse_joint_state(message: bytes) -> Layout[tuple[str, ...]]:
             raise LayoutError(
                 f"a joint state has {count} names but {values} values of {name}; it must have one a joint, or none"
             )
-        template.field(name, "f8", values)
+        template.doubles(name, values)
     return template.layout(names)
 
 
@@ -116,21 +112,17 @@ def _parse_multi_array(message: bytes) -> Layout[tuple[tuple[Dimension, ...], in
         Dimension(template.text(decisive=True), template.count(), template.count()) for _ in range(count)
     )
     offset = template.count()
-    template.field("data", "f8", template.count())
+    template.doubles("data", template.count())
     return template.layout((dimensions, offset))
 
 
 def _samples(messages: Sequence[bytes], parse: Callable[[bytes], Layout[None]]) -> Samples:
     faults: list[Fault] = []
-    groups = list(groups_of(messages, parse, faults))
-    if len(groups) == 1 and not faults:
-        rows = groups[0][1]
-        return Samples(_stamps(rows), _doubles(rows["linear"]), _doubles(rows["angular"]), ())
     total = len(messages)
     stamps = np.zeros(total, dtype=np.int64)
     linear, angular = np.empty((total, 3)), np.empty((total, 3))
     good = np.zeros(total, dtype=np.bool_)
-    for place, rows, _ in groups:
+    for place, rows, _ in groups_of(messages, parse, faults):
         good[place] = True
         stamps[place] = _stamps(rows)
         linear[place], angular[place] = rows["linear"], rows["angular"]

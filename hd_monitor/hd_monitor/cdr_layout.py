@@ -58,7 +58,7 @@ class Template:
         self._at = ENCAPSULATION
         self._decisive = np.zeros(len(message), dtype=np.bool_)
         self._decisive[:2] = True
-        self._fields: list[tuple[str, tuple[str, tuple[int, ...]], int]] = []
+        self._fields: dict[str, tuple[str | tuple[str, tuple[int]], int]] = {}  # name: format and place
 
     def _take(self, size: int, alignment: int) -> int:
         start = ENCAPSULATION + -(-(self._at - ENCAPSULATION) // alignment) * alignment
@@ -84,30 +84,23 @@ class Template:
             self._decisive[start : start + length] = True
         return self._message[start : start + length].rstrip(b"\0").decode(errors="replace")
 
-    def field(self, name: str, kind: str, values: int | None = None) -> None:
-        """Note a field: `kind` as numpy writes it ('i4', 'u4', 'f8'), one value or an array of `values`."""
-        size = int(kind[1:])
-        if values is not None and values > _LONGEST_SEQUENCE:
-            raise LayoutError(f"a message announces {values} values; it is damaged or of another type")
-        start = self._take(size * (1 if values is None else values), size if values != 0 else 1)
-        self._fields.append((name, (f"{self._order}{kind}", () if values is None else (values,)), start))
+    def doubles(self, name: str, count: int) -> None:
+        """Note a field of `count` doubles."""
+        if count > _LONGEST_SEQUENCE:
+            raise LayoutError(f"a message announces {count} values; it is damaged or of another type")
+        self._fields[name] = (f"{self._order}f8", (count,)), self._take(8 * count, 8 if count else 1)
 
     def stamp(self) -> None:
         """Note a header: its stamp as fields, the length of its frame's name as layout."""
-        self.field("seconds", "i4")
-        self.field("nanoseconds", "u4")
+        self._fields["seconds"] = f"{self._order}i4", self._take(4, 4)
+        self._fields["nanoseconds"] = f"{self._order}u4", self._take(4, 4)
         self.text()
 
     def layout[T](self, content: T) -> Layout[T]:
         """Return the layout noted, with the content that follows from the layout alone."""
-        record = np.dtype(
-            {
-                "names": [name for name, _, _ in self._fields],
-                "formats": [kind for _, kind, _ in self._fields],
-                "offsets": [start for _, _, start in self._fields],
-                "itemsize": len(self._message),
-            }
-        )
+        formats, offsets = zip(*self._fields.values(), strict=True)
+        names, size = list(self._fields), len(self._message)
+        record = np.dtype({"names": names, "formats": formats, "offsets": offsets, "itemsize": size})
         return Layout(record, self._decisive, content)
 
 

@@ -6,6 +6,7 @@ Parameters' choices, the node's subscriptions, the topics that replay looks for 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from operator import itemgetter
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -78,19 +79,14 @@ def _decode_blocks(messages: Sequence[bytes], settings: "JointSettings") -> Iter
     groups, faults = cdr.decode_multi_arrays(messages)
     items: list[tuple[int, contract.Block | str]] = list(faults)
     for group in groups:
-        places = group.place.tolist()
+        blocks: Sequence[contract.Block | LayoutError]
         try:
             blocks = contract.unpack_blocks(group.dimensions, group.data_offset, group.data)
         except LayoutError as error:
-            items.extend((place, str(error)) for place in places)
-            continue
-        items.extend(
-            (place, str(block) if isinstance(block, LayoutError) else block)
-            for place, block in zip(places, blocks, strict=True)
-        )
-    if len(groups) > 1 or faults:
-        items.sort(key=lambda item: item[0])
-    for _, item in items:
+            blocks = [error] * len(group.place)
+        for place, block in zip(group.place.tolist(), blocks, strict=True):
+            items.append((place, str(block) if isinstance(block, LayoutError) else block))
+    for _, item in sorted(items, key=itemgetter(0)):
         yield item
 
 
