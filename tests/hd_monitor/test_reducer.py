@@ -117,7 +117,7 @@ def test_a_mount_by_its_word():
         ({"flexspline_teeth": 162, "circular_spline_teeth": 160}, "swapped"),
         ({"flexspline_teeth": 160, "circular_spline_teeth": 160}, "not above"),
         ({"circular_spline_teeth": 163}, "odd"),
-        ({"circular_spline_teeth": 300}, "no flexspline survives"),
+        ({"circular_spline_teeth": 300}, "which none survives"),
         ({"flexspline_teeth": 0, "circular_spline_teeth": 2}, "not a number of teeth"),
         ({"flexspline_teeth": -160}, "not a number of teeth"),
         ({"flexspline_teeth": 160.5}, "whole"),
