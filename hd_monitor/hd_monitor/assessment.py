@@ -11,7 +11,7 @@ from .diagnosis.verdict import Verdict
 from .identification.result import Identification
 from .orders.rms_curve import SpeedBin
 from .orders.zoom import ZoomSpectrum, zoom_spectrum
-from .reducer import Reducer
+from .settings import JointSettings
 
 _FEWEST_SAMPLES = 16  # of a stretch worth a picture
 
@@ -24,12 +24,13 @@ class Assessment:
     ----------
     stamp : int
         The time it speaks of [ns], on the message stamps' clock: a whole multiple of ``analysis.period``.
+    settings : JointSettings
+        In force at that time.
     verdict : Verdict
     identification : Identification or None
         None as long as nothing could be identified.
     steady_parts : tuple of Record
         The newest stretch at an almost constant speed, in pieces; none while the joint does not turn steadily.
-    reducer : Reducer
     rms_curve : tuple of SpeedBin
         RMS [m/s²] by speed, since the start.
     quality : Quality
@@ -38,10 +39,6 @@ class Assessment:
         Mean magnitude of the wave-generator speed over the last period [rpm]; NaN without joint states.
     rms : float
         RMS over the last period [m/s²] of the tangential acceleration at the sensor's radius; NaN without any.
-    travel_needed : float
-        Output travel [rad] after which the first pair's lines separate by Fourier means (Hann window).
-    warn_limit, error_limit : float
-        Limits on the indexes in force, fractions.
     records : tuple of Record
         The vibration of the last period with its motion.
     joint_samples : JointSamples or None
@@ -54,17 +51,14 @@ class Assessment:
     """
 
     stamp: int
+    settings: JointSettings
     verdict: Verdict
     identification: Identification | None
     steady_parts: tuple[Record, ...]
-    reducer: Reducer
     rms_curve: tuple[SpeedBin, ...]
     quality: Quality
     speed: float
     rms: float
-    travel_needed: float
-    warn_limit: float
-    error_limit: float
     torque_source: str = "unknown"
     records: tuple[Record, ...] = ()
     joint_samples: JointSamples | None = None
@@ -87,11 +81,12 @@ class Assessment:
         steady = self.steady
         if steady is None or int(np.isfinite(steady.acceleration).sum()) < _FEWEST_SAMPLES:
             return None
-        rpm = abs(float(steady.speed.mean())) * self.reducer.reduction * 60.0 / math.tau
+        reducer = self.settings.reducer
+        rpm = abs(float(steady.speed.mean())) * reducer.reduction * 60.0 / math.tau
         k = self.strongest_pair
-        around = self.reducer.line_frequencies(rpm, k)
+        around = reducer.line_frequencies(rpm, k)
         if around.flexspline >= 0.5 / steady.period:
-            k, around = 1, self.reducer.line_frequencies(rpm, 1)
+            k, around = 1, reducer.line_frequencies(rpm, 1)
         if around.flexspline >= 0.5 / steady.period:
             return None
         return zoom_spectrum(steady.acceleration, steady.period, around=around, k=k)

@@ -26,8 +26,6 @@ class Monitor:
 
     Parameters
     ----------
-    joint : str
-        Name of the joint, for messages.
     settings : JointSettings
     identifier : Identifier or SensorlessIdentifier, optional
         One that goes on with what it knows, from an earlier recording of the same joint say.
@@ -41,17 +39,14 @@ class Monitor:
     Examples
     --------
     >>> import numpy as np
-    >>> monitor = Monitor("joint", JointSettings.from_mapping())
+    >>> monitor = Monitor(JointSettings.from_mapping())
     >>> t = np.arange(0, 3_000_000_000, 10_000_000)
     >>> monitor.add_motion(t, 0.1e-9 * t, np.full(t.size, 0.1), np.full(t.size, 10.0))
     >>> monitor.advance()
     []
     """
 
-    def __init__(
-        self, joint: str, settings: JointSettings, identifier: Identifier | SensorlessIdentifier | None = None
-    ) -> None:
-        self.joint = joint
+    def __init__(self, settings: JointSettings, identifier: Identifier | SensorlessIdentifier | None = None) -> None:
         self.settings = settings
         self._recorder = Recorder(settings)
         self._intake = Intake(settings, self._recorder.count)
@@ -170,21 +165,18 @@ class Monitor:
         return self._latest
 
     def _pack(self, stamp: int, verdict: Verdict, assembled: AssembledPeriod | None) -> Assessment:
-        evidence, limits = self._evidence, self.settings.diagnosis
+        evidence = self._evidence
         quality = self._recorder.quality(out_of_order=self._intake.out_of_order, clock_jumps=self._intake.clock_jumps)
         return Assessment(
             stamp=stamp,
+            settings=self.settings,
             verdict=verdict,
             identification=evidence.identification,
             steady_parts=evidence.steady_parts,
-            reducer=self.settings.reducer,
             rms_curve=evidence.rms_curve,
             quality=quality,
             speed=evidence.speed(assembled) if assembled is not None else math.nan,
             rms=evidence.level(assembled) if assembled is not None else math.nan,
-            travel_needed=self.settings.reducer.travel_to_separate(1),
-            warn_limit=limits.warn_index,
-            error_limit=limits.error_index,
             torque_source=self._recorder.torque_source,
             records=assembled.records if assembled is not None else (),
             joint_samples=assembled.joint_samples if assembled is not None else None,

@@ -54,7 +54,7 @@ class Recording:
 
 
 def run(recording: Recording, blocks: Sequence[Block] | None = None, settings: JointSettings = SETTINGS) -> Monitor:
-    monitor = Monitor("joint", settings)
+    monitor = Monitor(settings)
     recording.feed_motion(monitor)
     for block in recording.blocks() if blocks is None else blocks:
         monitor.add_block(block)

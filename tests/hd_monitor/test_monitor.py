@@ -43,7 +43,7 @@ def test_a_defect_that_appears_at_once_is_noticed_at_the_next_look() -> None:
 
 
 def test_assesses_every_whole_second_of_the_stamps_once(recording: Recording) -> None:
-    monitor = Monitor("joint", SETTINGS)
+    monitor = Monitor(SETTINGS)
     recording.feed_motion(monitor)
     for block in recording.blocks():
         monitor.add_block(block)
@@ -52,8 +52,8 @@ def test_assesses_every_whole_second_of_the_stamps_once(recording: Recording) ->
 
 
 def statuses(feed: Callable[[Monitor], list[Assessment]]) -> list[Status]:
-    monitor = Monitor("joint", SETTINGS)
-    return [status_of(assessment, "joint", SETTINGS) for assessment in feed(monitor)]
+    monitor = Monitor(SETTINGS)
+    return [status_of(assessment, "joint") for assessment in feed(monitor)]
 
 
 def test_statuses_do_not_depend_on_grouping_or_interleaving(recording: Recording) -> None:
@@ -90,7 +90,7 @@ def test_statuses_do_not_depend_on_grouping_or_interleaving(recording: Recording
 
 
 def test_nothing_is_said_before_both_inputs_came(recording: Recording) -> None:
-    monitor = Monitor("joint", SETTINGS)
+    monitor = Monitor(SETTINGS)
     recording.feed_motion(monitor, slice(0, 150))
     assert monitor.advance() == []
     assert monitor.latest is None
@@ -98,7 +98,7 @@ def test_nothing_is_said_before_both_inputs_came(recording: Recording) -> None:
 
 def test_a_standing_joint_is_undetermined_and_says_why() -> None:
     stamps = EPOCH + np.arange(5000, dtype=np.int64) * 1_000_000
-    monitor = Monitor("joint", SETTINGS)
+    monitor = Monitor(SETTINGS)
     still = np.zeros(500)
     monitor.add_motion(stamps[::10], still + 0.3, still, still + 10.0)
     monitor.add_vibration(stamps, np.random.default_rng(1).normal(0.0, 0.1, 5000))
@@ -109,7 +109,7 @@ def test_a_standing_joint_is_undetermined_and_says_why() -> None:
 
 
 def test_a_recording_shorter_than_a_period_is_assessed(recording: Recording) -> None:
-    monitor = Monitor("joint", SETTINGS)
+    monitor = Monitor(SETTINGS)
     recording.feed_motion(monitor, slice(0, 60))
     for block in recording.blocks()[:5]:
         monitor.add_block(block)
@@ -151,7 +151,7 @@ def test_without_any_torque_the_result_is_relative(recording: Recording) -> None
 def test_signs_of_sensor_and_effort_are_a_matter_of_mounting(
     recording: Recording, sensor: float, effort: float
 ) -> None:
-    monitor = Monitor("joint", SETTINGS)
+    monitor = Monitor(SETTINGS)
     monitor.add_motion(recording.joint_stamps, recording.position, recording.velocity, effort * recording.effort)
     for block in recording.blocks():
         monitor.add_block(block._replace(samples=sensor * block.samples))

@@ -16,7 +16,7 @@ def recording() -> Recording:
 
 @pytest.mark.parametrize("missing", ["joint states", "vibration"])
 def test_a_missing_input_is_named(recording: Recording, missing: str) -> None:
-    monitor = Monitor("joint", SETTINGS)
+    monitor = Monitor(SETTINGS)
     if missing == "vibration":
         recording.feed_motion(monitor)
     else:
@@ -41,7 +41,7 @@ def test_loss_of_an_input_midway_and_its_return(recording: Recording) -> None:
     lost = slice(30, 70)
     blocks = recording.blocks()
     del blocks[lost]
-    monitor = Monitor("joint", SETTINGS)
+    monitor = Monitor(SETTINGS)
     recording.feed_motion(monitor)
     for block in blocks:
         monitor.add_block(block)
@@ -138,7 +138,7 @@ def test_rejected_messages_show(recording: Recording) -> None:
 
 
 def test_efforts_of_zero_are_no_measurement(recording: Recording) -> None:
-    monitor = Monitor("joint", SETTINGS)
+    monitor = Monitor(SETTINGS)
     monitor.add_motion(recording.joint_stamps, recording.position, recording.velocity, 0.0 * recording.effort)
     for block in recording.blocks():
         monitor.add_block(block)
@@ -152,7 +152,7 @@ def test_efforts_of_zero_are_no_measurement(recording: Recording) -> None:
 
 
 def test_positions_in_degrees_are_suspected(recording: Recording) -> None:
-    monitor = Monitor("joint", SETTINGS)
+    monitor = Monitor(SETTINGS)
     wrong = np.degrees(recording.position), np.degrees(recording.velocity)
     monitor.add_motion(recording.joint_stamps, *wrong, recording.effort)
     for block in recording.blocks():
@@ -175,7 +175,7 @@ def test_positions_in_degrees_are_suspected(recording: Recording) -> None:
 def test_velocities_that_contradict_the_positions_are_named_as_the_cause(
     recording: Recording, factor: float, words: str
 ) -> None:
-    monitor = Monitor("joint", SETTINGS)
+    monitor = Monitor(SETTINGS)
     monitor.add_motion(recording.joint_stamps, recording.position, factor * recording.velocity, recording.effort)
     for block in recording.blocks():
         monitor.add_block(block)
@@ -186,7 +186,7 @@ def test_velocities_that_contradict_the_positions_are_named_as_the_cause(
 
 
 def test_positions_that_jump_about_are_named_as_the_cause(recording: Recording) -> None:
-    monitor = Monitor("joint", SETTINGS)
+    monitor = Monitor(SETTINGS)
     noise = np.random.default_rng(4).standard_normal(recording.position.size)
     monitor.add_motion(recording.joint_stamps, noise, recording.velocity, recording.effort)
     for block in recording.blocks():
@@ -196,7 +196,7 @@ def test_positions_that_jump_about_are_named_as_the_cause(recording: Recording) 
 
 
 def test_missing_velocities_are_taken_from_the_positions(recording: Recording) -> None:
-    monitor = Monitor("joint", SETTINGS)
+    monitor = Monitor(SETTINGS)
     monitor.add_motion(
         recording.joint_stamps, recording.position, np.full(recording.position.size, np.nan), recording.effort
     )
@@ -207,7 +207,7 @@ def test_missing_velocities_are_taken_from_the_positions(recording: Recording) -
 
 
 def test_contradictory_joint_states_are_named_without_a_sensor_too(recording: Recording) -> None:
-    monitor = Monitor("joint", JointSettings.from_mapping({"input.source": "joint_effort"}))
+    monitor = Monitor(JointSettings.from_mapping({"input.source": "joint_effort"}))
     monitor.add_motion(recording.joint_stamps, recording.position, -recording.velocity, recording.effort)
     monitor.finish()
     assert "velocities of the opposite sign" in latest(monitor).verdict.reason

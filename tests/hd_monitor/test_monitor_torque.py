@@ -54,7 +54,7 @@ def damaged(torque: Torque, where: Callable[[FloatArray], object], value: float 
 
 
 def test_the_part_is_named_by_the_measured_torque_alone(recording: Recording, torque: Torque) -> None:
-    monitor = Monitor("joint", SETTINGS)
+    monitor = Monitor(SETTINGS)
     feed(monitor, recording, torque)
     said = latest(monitor)
     assert said.verdict.component is Component.FLEXSPLINE
@@ -67,7 +67,7 @@ def test_the_part_is_named_by_the_measured_torque_alone(recording: Recording, to
 
 
 def test_the_result_does_not_depend_on_how_the_torque_comes(recording: Recording, torque: Torque) -> None:
-    together, apart = Monitor("joint", SETTINGS), Monitor("joint", SETTINGS)
+    together, apart = Monitor(SETTINGS), Monitor(SETTINGS)
     expected = feed(together, recording, torque)
     stamps, values = torque
     said = []
@@ -83,7 +83,7 @@ def test_the_result_does_not_depend_on_how_the_torque_comes(recording: Recording
 
 @pytest.mark.parametrize("value", [None, np.nan], ids=["lost", "not finite"])
 def test_short_holes_are_bridged(recording: Recording, torque: Torque, value: float | None) -> None:
-    monitor = Monitor("joint", SETTINGS)
+    monitor = Monitor(SETTINGS)
     said = feed(monitor, recording, damaged(torque, lambda t: t % 0.5 < 0.05, value))
     assert {s.torque_source for s in said} == {"wrench"}
     assert latest(monitor).verdict.component is Component.FLEXSPLINE
@@ -99,7 +99,7 @@ def test_short_holes_are_bridged(recording: Recording, torque: Torque, value: fl
 def test_a_sensor_that_fails_is_named_and_its_return_goes_on_with_the_evidence(
     recording: Recording, torque: Torque, value: float | None, code: FaultCode, words: str
 ) -> None:
-    monitor = Monitor("joint", SETTINGS)
+    monitor = Monitor(SETTINGS)
     said = feed(monitor, recording, damaged(torque, lambda t: (t > 4.0) & (t < 8.5), value))
     during = [s for s in said if s.verdict.fault_code is code]
     assert during
@@ -112,7 +112,7 @@ def test_a_sensor_that_fails_is_named_and_its_return_goes_on_with_the_evidence(
 
 
 def test_a_sensor_that_never_comes_is_missed(recording: Recording) -> None:
-    monitor = Monitor("joint", SETTINGS)
+    monitor = Monitor(SETTINGS)
     said = feed(monitor, recording, (np.empty(0, dtype=np.int64), np.empty(0)))
     assert said[-1].verdict.fault_code is FaultCode.INPUT_LOST
     assert "torque signal" in said[-1].verdict.reason
@@ -120,7 +120,7 @@ def test_a_sensor_that_never_comes_is_missed(recording: Recording) -> None:
 
 
 def test_zeros_are_no_measurement(recording: Recording, torque: Torque) -> None:
-    monitor = Monitor("joint", SETTINGS)
+    monitor = Monitor(SETTINGS)
     feed(monitor, recording, (torque[0], 0.0 * torque[1]))
     said = latest(monitor)
     assert said.torque_source == "unknown"

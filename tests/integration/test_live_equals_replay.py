@@ -133,7 +133,7 @@ def test_every_live_status_is_replayed_value_by_value(
     ]
     with Bag(recorder.write(tmp_path / "bag")) as bag:
         plans = plan(bag, Request(parameters=load_parameters(parameters)))
-        said = [status_of(s.assessment, s.plan.joint, s.plan.settings) for s in replay(bag, plans)]
+        said = [status_of(s.assessment, s.plan.joint) for s in replay(bag, plans)]
     replayed = [(status.level, status.message, status.hardware_id, dict(status.values)) for status in said]
 
     assert live[-1][3]["torque source"] == ("wrench" if load == "wrench" else "effort")

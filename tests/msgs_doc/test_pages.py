@@ -26,7 +26,7 @@ def documented_keys() -> list[str]:
 
 def test_every_key_of_a_status_is_documented_in_its_order() -> None:
     settings = JointSettings.from_mapping()
-    status = status_of(Monitor("joint", settings).silence(0), "joint", settings)
+    status = status_of(Monitor(settings).silence(0), "joint")
     keys = [key for key, _ in status.values]
     documented = documented_keys()
     assert set(keys) == set(documented) - {"internal errors"}

@@ -72,7 +72,7 @@ def verdicts(case: tuple[int, float]) -> Counter[str]:
     """Count the components named in one run."""
     seed, seconds = case
     rig, watched = random_unit(seed, seconds)
-    monitor = Monitor("joint", JointSettings.from_mapping(watched))
+    monitor = Monitor(JointSettings.from_mapping(watched))
     counted: Counter[str] = Counter()
     for stretch in Simulation(RigSettings.from_mapping(rig)):
         joint = stretch.joint

@@ -2,7 +2,6 @@
 
 from .judge import Judge
 from .probability import component_probabilities, name_component
-from .status import Status, status_of
 from .verdict import Component, FaultCode, Level, Verdict
 
 __all__ = [
@@ -10,9 +9,7 @@ __all__ = [
     "FaultCode",
     "Judge",
     "Level",
-    "Status",
     "Verdict",
     "component_probabilities",
     "name_component",
-    "status_of",
 ]

@@ -2,12 +2,8 @@
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
-from ..settings import JointSettings
-
-if TYPE_CHECKING:
-    from ..assessment import Assessment
+from ..assessment import Assessment
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -37,17 +33,10 @@ def _number(value: float, digits: int = 3) -> str:
     return "unknown" if math.isnan(value) else f"{value:.{digits}f}"
 
 
-def status_of(assessment: "Assessment", joint: str, settings: JointSettings) -> Status:
-    """Write an assessment as a status.
-
-    Parameters
-    ----------
-    assessment : Assessment
-    joint : str
-        Name of the joint.
-    settings : JointSettings
-    """
+def status_of(assessment: Assessment, joint: str) -> Status:
+    """Write an assessment of the joint of this name as a status."""
     verdict, found, quality = assessment.verdict, assessment.identification, assessment.quality
+    limits, needed = assessment.settings.diagnosis, assessment.settings.reducer.travel_to_separate(1)
     nan = math.nan
     degrees = math.degrees(found.travel) if found else 0.0
     values = [
@@ -62,10 +51,10 @@ def status_of(assessment: "Assessment", joint: str, settings: JointSettings) -> 
         ("circular spline index (%)", _number(100.0 * found.index.circular_spline if found else nan)),
         ("circular spline index std (%)", _number(100.0 * found.index_std.circular_spline if found else nan)),
         ("index kind", ("relative" if found.relative else "absolute") if found else "unknown"),
-        ("warn limit (%)", _number(100.0 * assessment.warn_limit)),
-        ("error limit (%)", _number(100.0 * assessment.error_limit)),
+        ("warn limit (%)", _number(100.0 * limits.warn_index)),
+        ("error limit (%)", _number(100.0 * limits.error_index)),
         ("travel (deg)", _number(degrees, 1)),
-        ("travel needed (deg)", _number(math.degrees(assessment.travel_needed), 1)),
+        ("travel needed (deg)", _number(math.degrees(needed), 1)),
         ("signal to noise (dB)", _number(found.signal_to_noise if found else nan, 1)),
         ("misfit", _number(found.misfit if found else nan, 2)),
         ("natural frequency (Hz)", _number(found.natural_frequency if found else nan, 2)),
@@ -97,7 +86,7 @@ def status_of(assessment: "Assessment", joint: str, settings: JointSettings) -> 
     return Status(
         level=int(verdict.level),
         message=verdict.reason,
-        hardware_id=settings.serial,
+        hardware_id=assessment.settings.serial,
         values=tuple(values),
     )
 

@@ -37,7 +37,7 @@ class _Channel:
 
     def __init__(self, plan: JointPlan, identifier: Identifier | SensorlessIdentifier | None) -> None:
         self.plan = plan
-        self.monitor = Monitor(plan.joint, plan.settings, identifier)
+        self.monitor = Monitor(plan.settings, identifier)
         self._inputs = Inputs(plan.joint, plan.settings, self.monitor)
         self._timeout = round(plan.settings.input.timeout * NANOSECONDS)
         self._heard: int | None = None

@@ -117,6 +117,7 @@ class JointResult:
         last, plan = self.last, self.plan
         if last is None:
             return {"joint": plan.joint, "verdict": None, "lines": [], "rms_curve": [], "timeline": self.timeline}
+        limits = last.settings.diagnosis
         entry = {
             "joint": plan.joint,
             "verdict": verdict_entry(last),
@@ -124,10 +125,10 @@ class JointResult:
             "rms_curve": [{"rpm": rpm, "rms": rms, "samples": samples} for rpm, rms, samples in last.rms_curve],
             "timeline": self.timeline,
             "relative": bool(last.identification.relative) if last.identification else None,
-            "warn_limit": last.warn_limit,
-            "error_limit": last.error_limit,
+            "warn_limit": limits.warn_index,
+            "error_limit": limits.error_index,
             "quality": asdict(last.quality),
-            "status": dict(status_of(last, plan.joint, plan.settings).values),
+            "status": dict(status_of(last, plan.joint).values),
             "topics": {quantity.value: plan.topics.get(quantity) for quantity in Quantity},
             "parameters": dict(plan.settings.values),
             "notes": list(plan.notes),

@@ -52,11 +52,11 @@ def summarise(result: JointResult) -> str:
     ]
     if found is not None:
         kind = "relative index" if found.relative else "index"
-        index, std = found.index, found.index_std
+        index, std, limits = found.index, found.index_std, last.settings.diagnosis
         lines += [
             f"  flexspline {kind} {percent_with_std(index.flexspline, std.flexspline)}, "
             f"circular spline {percent_with_std(index.circular_spline, std.circular_spline)}"
-            + ("" if found.relative else f"; limits {100 * last.warn_limit:g} % and {100 * last.error_limit:g} %"),
+            + ("" if found.relative else f"; limits {100 * limits.warn_index:g} % and {100 * limits.error_index:g} %"),
             f"  from {math.degrees(found.travel):.0f}° of travel, signal to noise {found.signal_to_noise:.0f} dB",
         ]
     quality = last.quality

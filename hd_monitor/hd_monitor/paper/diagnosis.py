@@ -31,7 +31,7 @@ def diagnose(case: Case) -> Assessment:
     noise = np.random.default_rng(_SEED).normal(0.0, SENSOR_NOISE, record.acceleration.size)
     samples = record.acceleration + noise
     seconds = (samples.size - 1) / record.rate
-    monitor = Monitor("joint", case.settings)
+    monitor = Monitor(case.settings)
 
     motion = np.arange(math.floor(seconds * _MOTION_RATE) + 1) / _MOTION_RATE
     omega = 2.0 * math.pi * output_frequency(record)

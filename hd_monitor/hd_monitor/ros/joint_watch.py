@@ -59,7 +59,7 @@ class JointWatch:
         self._transitions: list[Status] = []
 
     def _start(self) -> None:
-        self._monitor = Monitor(self.joint, self.settings)
+        self._monitor = Monitor(self.settings)
         self._inputs = Inputs(self.joint, self.settings, self._monitor)
 
     def wake(self, now: int) -> None:
@@ -114,7 +114,7 @@ class JointWatch:
 
     def status(self) -> Status:
         """Write what is known now."""
-        return status_of(self.present, self.joint, self.settings)
+        return status_of(self.present, self.joint)
 
     def take_transitions(self) -> list[Status]:
         """Return the statuses that named another part, level or code than the one before, oldest first, once."""

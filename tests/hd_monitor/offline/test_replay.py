@@ -24,7 +24,7 @@ def run(path: Path, **request: Any) -> list[Replayed]:
 
 
 def statuses(said: list[Replayed]) -> list[Any]:
-    return [(s.assessment.stamp, status_of(s.assessment, s.plan.joint, s.plan.settings)) for s in said]
+    return [(s.assessment.stamp, status_of(s.assessment, s.plan.joint)) for s in said]
 
 
 @pytest.fixture(scope="module")

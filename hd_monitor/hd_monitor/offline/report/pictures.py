@@ -69,7 +69,7 @@ class _View:
 
     @property
     def pair_speeds(self) -> list[tuple[float, str]]:
-        return pair_speeds(self.last.reducer, self.natural_frequency, self.harmonics)
+        return pair_speeds(self.last.settings.reducer, self.natural_frequency, self.harmonics)
 
     @property
     def steady(self) -> Record | None:
@@ -80,7 +80,7 @@ class _View:
     def rpm(self) -> float:
         """Mean wave-generator speed of that stretch [rpm]; 0 without one."""
         mean = 0.0 if self.steady is None else float(self.steady.speed.mean())
-        return abs(mean) * self.last.reducer.reduction * 30.0 / np.pi
+        return abs(mean) * self.last.settings.reducer.reduction * 30.0 / np.pi
 
 
 def _zoom(view: _View) -> Figure | None:
@@ -96,7 +96,7 @@ def _orders(view: _View) -> Figure | None:
     if angle.size < 100:
         return None
     k = view.last.strongest_pair
-    pair = LinePair(*(k * order for order in view.last.reducer.output_orders))
+    pair = LinePair(*(k * order for order in view.last.settings.reducer.output_orders))
     margin = 4.0 * (pair.flexspline - pair.circular_spline)
     axis = np.linspace(pair.circular_spline - margin, pair.flexspline + margin, _ORDERS_SHOWN)
     spectrum = order_spectrum(angle, values, axis)
@@ -110,7 +110,7 @@ def _orders(view: _View) -> Figure | None:
 def _spectrum(view: _View) -> Figure | None:
     if view.steady is None:
         return None
-    pairs = [view.last.reducer.line_frequencies(view.rpm, k) for k in range(1, view.harmonics + 1)]
+    pairs = [view.last.settings.reducer.line_frequencies(view.rpm, k) for k in range(1, view.harmonics + 1)]
     title = f"Spectrum at {view.rpm:.0f} rpm"
     return spectrum_plot(amplitude_spectrum(view.steady), pairs, title=title, natural_frequency=view.natural_frequency)
 
@@ -146,14 +146,14 @@ def _lines(view: _View) -> Figure | None:
 def _indexes(view: _View) -> Figure | None:
     if all(entry["flexspline_index"] is None for entry in view.timeline):
         return None
-    last = view.last
+    last, limits = view.last, view.last.settings.diagnosis
     relative = bool(last.identification and last.identification.relative)
     title = "Relative indexes over time" if relative else "Stiffness indexes over time"
-    return indexes_plot(view.timeline, warn=last.warn_limit, error=last.error_limit, relative=relative, title=title)
+    return indexes_plot(view.timeline, warn=limits.warn_index, error=limits.error_index, relative=relative, title=title)
 
 
 def _phase(view: _View) -> Figure | None:
-    trace = phase_trace(view.steady, view.last.reducer) if view.steady is not None else None
+    trace = phase_trace(view.steady, view.last.settings.reducer) if view.steady is not None else None
     if trace is None:
         return None
     return phase_plot(trace, title=f"Phase trace at {trace.rpm:.0f} rpm, {trace.band[0]:.0f}–{trace.band[1]:.0f} Hz")

@@ -46,11 +46,11 @@ def test_joint_2_is_named(ur10e, file):
 @pytest.mark.parametrize("file", [SHORT, LONG])
 def test_the_monitor_shows_joint_2_in_its_status(ur10e, file):
     samples, parameters = ur10e(file, 2), settings_of(**UR10E)
-    monitor = Monitor("joint_2", parameters)
+    monitor = Monitor(parameters)
     monitor.add_motion(np.rint(1e9 * samples.times).astype(np.int64), samples.angle, samples.speed, samples.effort)
     assessment = monitor.finish()
     assert assessment is not None
-    status = status_of(assessment, "joint_2", parameters)
+    status = status_of(assessment, "joint_2")
     assert status.value("component") == "circular_spline"
     assert status.value("index kind") == "relative"
     assert status.value("unstable from (rpm)") == "unknown"
