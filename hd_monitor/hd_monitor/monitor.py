@@ -6,9 +6,10 @@ from collections.abc import Mapping
 import numpy as np
 import numpy.typing as npt
 
-from .acquisition.intake import Intake, Period
+from .acquisition.intake import Intake
 from .acquisition.presence import Presence
 from .acquisition.recorder import AssembledPeriod, Recorder
+from .acquisition.timeline import Period
 from .assessment import Assessment
 from .contract import NANOSECONDS, Block
 from .diagnosis.absence import lost, not_enough, nothing_received, with_assumed_torque

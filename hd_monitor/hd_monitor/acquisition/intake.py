@@ -1,7 +1,6 @@
 """A joint's inputs, buffered until a period of their stamps is complete on all of them."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from itertools import groupby
 
 import numpy as np
@@ -10,33 +9,10 @@ from ..arrays import FloatArray, IntArray
 from ..contract import NANOSECONDS, Block
 from ..settings import JointSettings
 from ..sources import Quantity
-from .stream import Samples, StampedBuffer
-from .timeline import Timeline, Window
+from .stream import StampedBuffer
+from .timeline import Period, Timeline
 
 _COLUMNS = {Quantity.VIBRATION: 1, Quantity.MOTION: 3, Quantity.TORQUE: 1}
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Period:
-    """The samples of one period.
-
-    Attributes
-    ----------
-    epoch, start, end : int
-        Zero of the core's times, and the period's bounds [ns].
-    cut : bool
-        Whether it starts on another time base than the one before.
-    samples, following : dict of Quantity to Samples
-        Those of the period, and the first one after it, or none: it closes the interpolation. Values in columns:
-        θ'' [rad/s²]; position [rad], velocity [rad/s] and effort [N·m]; torque [N·m].
-    """
-
-    epoch: int
-    start: int
-    end: int
-    cut: bool
-    samples: dict[Quantity, Samples]
-    following: dict[Quantity, Samples]
 
 
 class Intake:
@@ -58,7 +34,8 @@ class Intake:
         self._count = count
         self._buffers = {quantity: StampedBuffer(columns) for quantity, columns in _COLUMNS.items()}
         self._timeline = Timeline(
-            [self._buffers[quantity] for quantity in settings.sources],
+            self._buffers,
+            settings.sources,
             round(settings.analysis.period * NANOSECONDS),
             round(settings.input.timeout * NANOSECONDS),
         )
@@ -100,24 +77,11 @@ class Intake:
     def complete(self) -> Iterator[Period]:
         """Yield every period that has become complete on all inputs that the joint needs; oldest first."""
         self._unpack_blocks()
-        while (window := self._timeline.next()) is not None:
-            yield self._take(window)
+        yield from iter(self._timeline.next, None)
 
     def rest(self) -> Iterator[Period]:
         """Yield what is left, complete or not: for the end of a recording."""
-        while (window := self._timeline.rest()) is not None:
-            yield self._take(window)
-
-    def _take(self, window: Window) -> Period:
-        samples = {quantity: buffer.take(window.end) for quantity, buffer in self._buffers.items()}
-        return Period(
-            epoch=self._timeline.epoch,
-            start=window.start,
-            end=window.end,
-            cut=window.cut,
-            samples=samples,
-            following={quantity: buffer.peek_first() for quantity, buffer in self._buffers.items()},
-        )
+        yield from iter(self._timeline.rest, None)
 
     @property
     def out_of_order(self) -> int:

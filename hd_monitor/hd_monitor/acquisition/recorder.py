@@ -11,12 +11,12 @@ from ..arrays import BoolArray, FloatArray, IntArray, runs_of
 from ..settings import JointSettings
 from ..sources import Quantity
 from .clock import recover_clock
-from .intake import Period
 from .motion import MotionTrack, TorqueTrack, Track, even_stamps
 from .quality import Quality
 from .record import JointSamples, Record
 from .screening import Screened, screen
 from .stream import Samples
+from .timeline import Period
 
 _NS = 1e-9
 _REPLACED = ("rate", "last_fault")  # of the quality: not counters

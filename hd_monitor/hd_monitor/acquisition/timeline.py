@@ -1,17 +1,33 @@
-"""The next period of the message stamps that is complete on all inputs."""
+"""The periods of the message stamps, handed out as soon as they are complete on all inputs."""
 
-from collections.abc import Sequence
-from typing import NamedTuple
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
 
-from .stream import StampedBuffer
+from ..sources import Quantity
+from .stream import Samples, StampedBuffer
 
 
-class Window(NamedTuple):
-    """A period to assess: its bounds [ns], and whether it starts on another time base than the one before."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Period:
+    """The samples of one period.
 
+    Attributes
+    ----------
+    epoch, start, end : int
+        Zero of the core's times, and the period's bounds [ns].
+    cut : bool
+        Whether it starts on another time base than the one before.
+    samples, following : dict of Quantity to Samples
+        Those of the period, and the first one after it, or none: it closes the interpolation. Values in columns:
+        θ'' [rad/s²]; position [rad], velocity [rad/s] and effort [N·m]; torque [N·m].
+    """
+
+    epoch: int
     start: int
     end: int
     cut: bool
+    samples: dict[Quantity, Samples]
+    following: dict[Quantity, Samples]
 
 
 class Timeline:
@@ -19,82 +35,89 @@ class Timeline:
 
     Parameters
     ----------
-    inputs : sequence of StampedBuffer
+    buffers : mapping of Quantity to StampedBuffer
+        What has come in; periods are taken out of it.
+    needed : collection of Quantity
         The inputs that an assessment needs.
     period, timeout : int
         Length of a period, and silence after which the others stop waiting for an input [ns].
     """
 
-    def __init__(self, inputs: Sequence[StampedBuffer], period: int, timeout: int) -> None:
-        self._inputs = tuple(inputs)
+    def __init__(
+        self,
+        buffers: Mapping[Quantity, StampedBuffer],
+        needed: Collection[Quantity],
+        period: int,
+        timeout: int,
+    ) -> None:
+        self._buffers = buffers
+        self._inputs = [buffers[quantity] for quantity in needed]
         self._period = period
         self._timeout = timeout
         self._start: int | None = None
-        self._cut = False
-        self.epoch = 0
+        self._epoch = 0
 
-    def next(self) -> Window | None:
-        """Return the next complete period, or None while more data is awaited."""
+    def next(self) -> Period | None:
+        """Take out the next complete period, or return None while more data is awaited."""
         while True:
-            start = self._start if self._start is not None else self._first_start()
-            if start is not None:
-                start = self._skip_empty(start)
-                if self._complete(start + self._period):
-                    return self._hand_out(start)
+            start = self._next_start()
+            if start is not None and self._complete(start + self._period):
+                return self._take(start)
             if not self._pass_jump():
                 return None
 
-    def rest(self) -> Window | None:
-        """Return the period of the oldest data even though it is not complete: for the end of a recording."""
-        oldest = [buffer.oldest for buffer in self._inputs if buffer.oldest is not None]
-        if not oldest:
-            return None
-        return self._hand_out(min(oldest) // self._period * self._period)
+    def rest(self) -> Period | None:
+        """Take out the period of the oldest data even though it is not complete: for the end of a recording."""
+        oldest = self._oldest()
+        return None if oldest is None else self._take(oldest // self._period * self._period)
 
-    def _hand_out(self, start: int) -> Window:
-        if self._start is None:
-            self.epoch = start
-            self._cut = True
-        window = Window(start, start + self._period, self._cut)
-        self._start, self._cut = start + self._period, False
-        return window
+    def _take(self, start: int) -> Period:
+        cut, end = self._start is None, start + self._period
+        if cut:
+            self._epoch = start
+        self._start = end
+        samples = {quantity: buffer.take(end) for quantity, buffer in self._buffers.items()}
+        return Period(
+            epoch=self._epoch,
+            start=start,
+            end=end,
+            cut=cut,
+            samples=samples,
+            following={quantity: buffer.peek_first() for quantity, buffer in self._buffers.items()},
+        )
 
-    def _first_start(self) -> int | None:
-        """Begin at the earliest sample once all inputs have some, or one has waited for the others long enough."""
-        oldest = [buffer.oldest for buffer in self._inputs if buffer.oldest is not None]
-        if not oldest:
-            return None
-        newest = max(buffer.newest or 0 for buffer in self._inputs)
-        if len(oldest) < len(self._inputs) and newest - min(oldest) < self._timeout:
-            return None
-        return min(oldest) // self._period * self._period
+    def _oldest(self) -> int | None:
+        """Earliest stamp [ns] still here."""
+        return min((buffer.oldest for buffer in self._inputs if buffer.oldest is not None), default=None)
 
-    def _skip_empty(self, start: int) -> int:
-        """Jump over a time in which no input has anything."""
-        oldest = None
-        for buffer in self._inputs:
-            if buffer.oldest is not None and (oldest is None or buffer.oldest < oldest):
-                oldest = buffer.oldest
-        if oldest is not None and oldest >= start + self._period:
-            return oldest // self._period * self._period
-        return start
+    def _newest(self) -> int | None:
+        """Latest stamp [ns] that came."""
+        return max((buffer.newest for buffer in self._inputs if buffer.newest is not None), default=None)
+
+    def _next_start(self) -> int | None:
+        """Begin at the earliest sample, once all inputs have some or one has waited for the others long enough.
+
+        Later, go on where the last period ended, or jump over a time in which no input has anything.
+        """
+        oldest, newest = self._oldest(), self._newest()
+        if oldest is None or newest is None:
+            return self._start
+        first = oldest // self._period * self._period
+        if self._start is not None:
+            return max(first, self._start)
+        waiting = any(buffer.oldest is None for buffer in self._inputs)
+        return None if waiting and newest - oldest < self._timeout else first
 
     def _complete(self, end: int) -> bool:
-        newest = None
-        waiting = some = False
-        for buffer in self._inputs:
-            until = buffer.complete_until
-            if (until is None or until < end) and not self._ended(buffer):
-                waiting = True
-            if buffer.newest is not None and (newest is None or buffer.newest > newest):
-                newest = buffer.newest
-            some = some or (buffer.oldest is not None and buffer.oldest < end)
-        given_up = newest is not None and newest >= end + self._timeout
-        return some and (given_up or not waiting)
-
-    def _ended(self, buffer: StampedBuffer) -> bool:
-        """Whether a buffer's clock was set back: nothing more will come on the old time base."""
-        return buffer.jumped
+        """Whether there is something before `end` [ns], and nothing more will come."""
+        oldest, newest = self._oldest(), self._newest()
+        if oldest is None or newest is None or oldest >= end:
+            return False
+        waiting = any(
+            (buffer.complete_until is None or buffer.complete_until < end) and not buffer.jumped
+            for buffer in self._inputs
+        )
+        return not waiting or newest >= end + self._timeout
 
     def _pass_jump(self) -> bool:
         """Go on to the new time base once all inputs have jumped, or one has left the others waiting long enough."""
