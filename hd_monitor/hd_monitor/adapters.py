@@ -22,17 +22,11 @@ UNNAMED_JOINT = "joint"
 class Sink(Protocol):
     """What an adapter feeds: the input side of :class:`hd_monitor.monitor.Monitor`."""
 
-    def add_vibration(self, stamps: IntArray, values: FloatArray) -> None:
-        """Take samples of θ'' [rad/s²] with their stamps [ns]."""
+    def add(self, quantity: Quantity, stamps: IntArray, *columns: FloatArray) -> None:
+        """Take samples with their stamps [ns]: θ'' [rad/s²]; position, velocity and effort; or torque [N·m]."""
 
     def add_block(self, block: contract.Block) -> None:
         """Take a block of samples of θ'' [rad/s²]."""
-
-    def add_motion(self, stamps: IntArray, position: FloatArray, velocity: FloatArray, effort: FloatArray) -> None:
-        """Take joint states [rad, rad/s, N·m] with their stamps [ns]."""
-
-    def add_torque(self, stamps: IntArray, torque: FloatArray) -> None:
-        """Take transmitted torque [N·m] with its stamps [ns]."""
 
     def reject(self, reason: str) -> None:
         """Count a message that says nothing, and remember why."""
@@ -67,12 +61,10 @@ class Inputs:
         for item in decode(messages, self._settings):
             if isinstance(item, str):
                 self._sink.reject(item)
-            elif not isinstance(item, Stamped):
-                self._sink.add_block(item)
-            elif quantity is Quantity.TORQUE:
-                self._sink.add_torque(item.stamps, item.values)
+            elif isinstance(item, Stamped):
+                self._sink.add(quantity, item.stamps, item.values)
             else:
-                self._sink.add_vibration(item.stamps, item.values)
+                self._sink.add_block(item)
 
     def _add_motion(self, messages: Sequence[bytes]) -> None:
         groups, faults = cdr.decode_joint_states(messages)
@@ -96,7 +88,7 @@ class Inputs:
             self._sink.reject(fault.reason)
         if mine.any():
             self._joint_seen = True
-            self._sink.add_motion(stamps[mine], *values[:, mine])
+            self._sink.add(Quantity.MOTION, stamps[mine], *values[:, mine])
 
     def _column(self, names: tuple[str, ...]) -> int | None:
         wanted = self._wanted or self._joint

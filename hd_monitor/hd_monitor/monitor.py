@@ -42,7 +42,7 @@ class Monitor:
     >>> import numpy as np
     >>> monitor = Monitor(JointSettings.from_mapping())
     >>> t = np.arange(0, 3_000_000_000, 10_000_000)
-    >>> monitor.add_motion(t, 0.1e-9 * t, np.full(t.size, 0.1), np.full(t.size, 10.0))
+    >>> monitor.add(Quantity.MOTION, t, 0.1e-9 * t, np.full(t.size, 0.1), np.full(t.size, 10.0))
     >>> monitor.advance()
     []
     """
@@ -58,30 +58,24 @@ class Monitor:
 
     # Feeding -------------------------------------------------------------------------------------------------------
 
-    def add_vibration(self, stamps: npt.ArrayLike, values: npt.ArrayLike) -> None:
-        """Add single samples of θ'' [rad/s²] with their stamps [ns], both of shape (N,), in the order they came."""
-        self._add(Quantity.VIBRATION, stamps, values)
+    def add(self, quantity: Quantity, stamps: npt.ArrayLike, *columns: npt.ArrayLike) -> None:
+        """Add single samples in the order they came, stamps and columns of shape (N,).
+
+        Parameters
+        ----------
+        quantity : Quantity
+        stamps : array_like of int
+            [ns].
+        *columns : array_like
+            Of a vibration θ'' [rad/s²]; of a motion the output-side position [rad], velocity [rad/s] and effort
+            [N·m], NaN where a message lacks one; of a torque the one transmitted [N·m].
+        """
+        rows = np.column_stack([np.asarray(column, dtype=np.float64) for column in columns])
+        self._intake.add(quantity, np.asarray(stamps, dtype=np.int64), rows)
 
     def add_block(self, block: Block) -> None:
         """Add a block of samples of θ''; one with number and stamp of the last one is a duplicate and is dropped."""
         self._intake.add_block(block)
-
-    def add_motion(
-        self, stamps: npt.ArrayLike, position: npt.ArrayLike, velocity: npt.ArrayLike, effort: npt.ArrayLike
-    ) -> None:
-        """Add joint states, all of shape (N,), in the order they came.
-
-        Stamps [ns], output-side position [rad], velocity [rad/s] and effort [N·m]; NaN where a message lacks one.
-        """
-        self._add(Quantity.MOTION, stamps, position, velocity, effort)
-
-    def add_torque(self, stamps: npt.ArrayLike, torque: npt.ArrayLike) -> None:
-        """Add transmitted torque [N·m] with its stamps [ns], both of shape (N,), in the order it came."""
-        self._add(Quantity.TORQUE, stamps, torque)
-
-    def _add(self, quantity: Quantity, stamps: npt.ArrayLike, *columns: npt.ArrayLike) -> None:
-        rows = np.column_stack([np.asarray(column, dtype=np.float64) for column in columns])
-        self._intake.add(quantity, np.asarray(stamps, dtype=np.int64), rows)
 
     def reject(self, reason: str) -> None:
         """Note a message that could not be used, with the reason; it shows in every status."""

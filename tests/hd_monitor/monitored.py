@@ -11,6 +11,7 @@ from hd_monitor.model import ParametricModel, StiffnessSeries
 from hd_monitor.model.simulation import constant_speed, simulate
 from hd_monitor.monitor import Monitor
 from hd_monitor.settings import JointSettings
+from hd_monitor.sources import Quantity
 
 EPOCH = 1_700_000_000_250_000_000
 RATE = 1000
@@ -50,7 +51,13 @@ class Recording:
         ]
 
     def feed_motion(self, monitor: Monitor, chosen: slice = slice(None)) -> None:
-        monitor.add_motion(self.joint_stamps[chosen], self.position[chosen], self.velocity[chosen], self.effort[chosen])
+        monitor.add(
+            Quantity.MOTION,
+            self.joint_stamps[chosen],
+            self.position[chosen],
+            self.velocity[chosen],
+            self.effort[chosen],
+        )
 
 
 def run(recording: Recording, blocks: Sequence[Block] | None = None, settings: JointSettings = SETTINGS) -> Monitor:

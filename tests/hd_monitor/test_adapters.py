@@ -68,17 +68,12 @@ class Recorder:
         self.torque: list[tuple[int, float]] = []
         self.rejected: list[str] = []
 
-    def add_vibration(self, stamps: IntArray, values: FloatArray) -> None:
-        self.vibration += zip(stamps.tolist(), values.tolist(), strict=True)
+    def add(self, quantity: Quantity, stamps: IntArray, *columns: FloatArray) -> None:
+        kept: list[Any] = getattr(self, quantity)
+        kept += zip(stamps.tolist(), *(column.tolist() for column in columns), strict=True)
 
     def add_block(self, block: Block) -> None:
         self.blocks.append(block)
-
-    def add_motion(self, stamps: Any, position: Any, velocity: Any, effort: Any) -> None:
-        self.motion += zip(stamps.tolist(), position.tolist(), velocity.tolist(), effort.tolist(), strict=True)
-
-    def add_torque(self, stamps: IntArray, torque: FloatArray) -> None:
-        self.torque += zip(stamps.tolist(), torque.tolist(), strict=True)
 
     def reject(self, reason: str) -> None:
         self.rejected.append(reason)

@@ -12,6 +12,7 @@ from hd_monitor.diagnosis.verdict import Component, Level
 from hd_monitor.identification.identifier import LONGEST_PERIOD, LONGEST_SEGMENT
 from hd_monitor.monitor import Monitor
 from hd_monitor.settings import JointSettings
+from hd_monitor.sources import Quantity
 
 
 @pytest.fixture(scope="module")
@@ -33,8 +34,8 @@ def test_a_defect_that_appears_at_once_is_noticed_at_the_next_look() -> None:
     monitor = run(sound)
     assert latest(monitor).verdict.component is Component.NONE
     later = round(turns * 1e9)
-    monitor.add_motion(worn.joint_stamps + later, worn.position, worn.velocity, worn.effort)
-    monitor.add_vibration(worn.stamps + later, worn.values)
+    monitor.add(Quantity.MOTION, worn.joint_stamps + later, worn.position, worn.velocity, worn.effort)
+    monitor.add(Quantity.VIBRATION, worn.stamps + later, worn.values)
     said = [(a.stamp - EPOCH - later, a.verdict.component) for a in monitor.advance()]
     look = round((LONGEST_PERIOD + 2.0 * LONGEST_SEGMENT) * 1e9)
     assert Component.NONE not in {component for after, component in said if after > look}
@@ -77,7 +78,7 @@ def test_statuses_do_not_depend_on_grouping_or_interleaving(recording: Recording
         found = []
         for first in range(0, recording.values.size - recording.values.size % BLOCK, 777):
             last = min(first + 777, recording.values.size - recording.values.size % BLOCK)
-            monitor.add_vibration(recording.stamps[first:last], recording.values[first:last])
+            monitor.add(Quantity.VIBRATION, recording.stamps[first:last], recording.values[first:last])
             found += monitor.advance()
             recording.feed_motion(monitor, slice(first // 10 + (first % 10 > 0), last // 10 + (last % 10 > 0)))
             found += monitor.advance()
@@ -100,8 +101,8 @@ def test_a_standing_joint_is_undetermined_and_says_why() -> None:
     stamps = EPOCH + np.arange(5000, dtype=np.int64) * 1_000_000
     monitor = Monitor(SETTINGS)
     still = np.zeros(500)
-    monitor.add_motion(stamps[::10], still + 0.3, still, still + 10.0)
-    monitor.add_vibration(stamps, np.random.default_rng(1).normal(0.0, 0.1, 5000))
+    monitor.add(Quantity.MOTION, stamps[::10], still + 0.3, still, still + 10.0)
+    monitor.add(Quantity.VIBRATION, stamps, np.random.default_rng(1).normal(0.0, 0.1, 5000))
     monitor.finish()
     verdict = latest(monitor).verdict
     assert (verdict.component, verdict.level) == (Component.UNDETERMINED, Level.WARN)
@@ -152,7 +153,9 @@ def test_signs_of_sensor_and_effort_are_a_matter_of_mounting(
     recording: Recording, sensor: float, effort: float
 ) -> None:
     monitor = Monitor(SETTINGS)
-    monitor.add_motion(recording.joint_stamps, recording.position, recording.velocity, effort * recording.effort)
+    monitor.add(
+        Quantity.MOTION, recording.joint_stamps, recording.position, recording.velocity, effort * recording.effort
+    )
     for block in recording.blocks():
         monitor.add_block(block._replace(samples=sensor * block.samples))
     monitor.finish()

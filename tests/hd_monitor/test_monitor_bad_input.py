@@ -7,6 +7,7 @@ from tests.hd_monitor.monitored import BLOCK, EPOCH, SETTINGS, Recording, latest
 from hd_monitor.diagnosis.verdict import Component, FaultCode, Level
 from hd_monitor.monitor import Monitor
 from hd_monitor.settings import JointSettings
+from hd_monitor.sources import Quantity
 
 
 @pytest.fixture(scope="module")
@@ -118,7 +119,9 @@ def test_a_clock_set_back_loses_no_evidence(recording: Recording) -> None:
     before = latest(monitor).identification
     assert before is not None
     shift = 3600 * 10**9
-    monitor.add_motion(recording.joint_stamps - shift, recording.position, recording.velocity, recording.effort)
+    monitor.add(
+        Quantity.MOTION, recording.joint_stamps - shift, recording.position, recording.velocity, recording.effort
+    )
     for block in recording.blocks():
         monitor.add_block(block._replace(stamp=block.stamp - shift, sequence=block.sequence + 500))
     monitor.advance()
@@ -139,7 +142,7 @@ def test_rejected_messages_show(recording: Recording) -> None:
 
 def test_efforts_of_zero_are_no_measurement(recording: Recording) -> None:
     monitor = Monitor(SETTINGS)
-    monitor.add_motion(recording.joint_stamps, recording.position, recording.velocity, 0.0 * recording.effort)
+    monitor.add(Quantity.MOTION, recording.joint_stamps, recording.position, recording.velocity, 0.0 * recording.effort)
     for block in recording.blocks():
         monitor.add_block(block)
     monitor.finish()
@@ -154,7 +157,7 @@ def test_efforts_of_zero_are_no_measurement(recording: Recording) -> None:
 def test_positions_in_degrees_are_suspected(recording: Recording) -> None:
     monitor = Monitor(SETTINGS)
     wrong = np.degrees(recording.position), np.degrees(recording.velocity)
-    monitor.add_motion(recording.joint_stamps, *wrong, recording.effort)
+    monitor.add(Quantity.MOTION, recording.joint_stamps, *wrong, recording.effort)
     for block in recording.blocks():
         monitor.add_block(block)
     monitor.finish()
@@ -176,7 +179,9 @@ def test_velocities_that_contradict_the_positions_are_named_as_the_cause(
     recording: Recording, factor: float, words: str
 ) -> None:
     monitor = Monitor(SETTINGS)
-    monitor.add_motion(recording.joint_stamps, recording.position, factor * recording.velocity, recording.effort)
+    monitor.add(
+        Quantity.MOTION, recording.joint_stamps, recording.position, factor * recording.velocity, recording.effort
+    )
     for block in recording.blocks():
         monitor.add_block(block)
     monitor.finish()
@@ -188,7 +193,7 @@ def test_velocities_that_contradict_the_positions_are_named_as_the_cause(
 def test_positions_that_jump_about_are_named_as_the_cause(recording: Recording) -> None:
     monitor = Monitor(SETTINGS)
     noise = np.random.default_rng(4).standard_normal(recording.position.size)
-    monitor.add_motion(recording.joint_stamps, noise, recording.velocity, recording.effort)
+    monitor.add(Quantity.MOTION, recording.joint_stamps, noise, recording.velocity, recording.effort)
     for block in recording.blocks():
         monitor.add_block(block)
     monitor.finish()
@@ -197,8 +202,12 @@ def test_positions_that_jump_about_are_named_as_the_cause(recording: Recording) 
 
 def test_missing_velocities_are_taken_from_the_positions(recording: Recording) -> None:
     monitor = Monitor(SETTINGS)
-    monitor.add_motion(
-        recording.joint_stamps, recording.position, np.full(recording.position.size, np.nan), recording.effort
+    monitor.add(
+        Quantity.MOTION,
+        recording.joint_stamps,
+        recording.position,
+        np.full(recording.position.size, np.nan),
+        recording.effort,
     )
     for block in recording.blocks():
         monitor.add_block(block)
@@ -208,6 +217,6 @@ def test_missing_velocities_are_taken_from_the_positions(recording: Recording) -
 
 def test_contradictory_joint_states_are_named_without_a_sensor_too(recording: Recording) -> None:
     monitor = Monitor(JointSettings.from_mapping({"input.source": "joint_effort"}))
-    monitor.add_motion(recording.joint_stamps, recording.position, -recording.velocity, recording.effort)
+    monitor.add(Quantity.MOTION, recording.joint_stamps, recording.position, -recording.velocity, recording.effort)
     monitor.finish()
     assert "velocities of the opposite sign" in latest(monitor).verdict.reason

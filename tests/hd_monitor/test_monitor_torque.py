@@ -11,6 +11,7 @@ from hd_monitor.assessment import Assessment
 from hd_monitor.diagnosis.verdict import Component, FaultCode, Level
 from hd_monitor.monitor import Monitor
 from hd_monitor.settings import JointSettings
+from hd_monitor.sources import Quantity
 
 SECOND = 1_000_000_000
 BLOCK_TIME = SECOND * BLOCK // RATE
@@ -39,7 +40,7 @@ def feed(monitor: Monitor, recording: Recording, torque: Torque) -> list[Assessm
     recording.feed_motion(monitor)
     for block in recording.blocks():
         monitor.add_block(block)
-    monitor.add_torque(*torque)
+    monitor.add(Quantity.TORQUE, *torque)
     return monitor.advance()
 
 
@@ -75,7 +76,7 @@ def test_the_result_does_not_depend_on_how_the_torque_comes(recording: Recording
         recording.feed_motion(apart, slice(10 * number, 10 * number + 10))
         apart.add_block(block)
         late = (stamps // SECOND * SECOND // BLOCK_TIME) == (block.stamp // BLOCK_TIME - 12)
-        apart.add_torque(stamps[late], values[late])  # whole seconds at once, and late
+        apart.add(Quantity.TORQUE, stamps[late], values[late])  # whole seconds at once, and late
         said += apart.advance()
     assert len(said) >= len(expected) - 3
     assert [s.verdict for s in said] == [s.verdict for s in expected[: len(said)]]

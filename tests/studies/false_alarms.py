@@ -18,6 +18,7 @@ from scipy.stats import beta
 
 from hd_monitor.monitor import Monitor
 from hd_monitor.settings import JointSettings
+from hd_monitor.sources import Quantity
 from hd_sim_node.settings import RigSettings
 from hd_sim_node.simulation import Simulation
 
@@ -79,8 +80,8 @@ def verdicts(case: tuple[int, float]) -> Counter[str]:
         unknown = np.full(len(joint), np.nan)
         velocity = unknown if joint.velocity is None else joint.velocity
         effort = unknown if joint.effort is None else joint.effort
-        monitor.add_motion(EPOCH + joint.stamps, joint.position, velocity, effort)
-        monitor.add_vibration(EPOCH + stretch.stamps, stretch.samples)
+        monitor.add(Quantity.MOTION, EPOCH + joint.stamps, joint.position, velocity, effort)
+        monitor.add(Quantity.VIBRATION, EPOCH + stretch.stamps, stretch.samples)
         counted.update(str(assessment.verdict.component) for assessment in monitor.advance())
     return counted
 

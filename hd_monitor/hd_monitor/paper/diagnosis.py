@@ -8,6 +8,7 @@ from ..assessment import Assessment
 from ..contract import NANOSECONDS, Block
 from ..errors import HdMonitorError
 from ..monitor import Monitor
+from ..sources import Quantity
 from .cases import Case
 from .records import REVOLUTIONS, output_frequency, steady_record
 
@@ -37,7 +38,7 @@ def diagnose(case: Case) -> Assessment:
     omega = 2.0 * math.pi * output_frequency(record)
     angle = record.output_angle[0] + omega * motion
     stamps = np.rint(motion * NANOSECONDS).astype(np.int64)
-    monitor.add_motion(stamps, angle, np.full(motion.size, omega), np.full(motion.size, np.nan))
+    monitor.add(Quantity.MOTION, stamps, angle, np.full(motion.size, omega), np.full(motion.size, np.nan))
     blocks = np.array_split(np.arange(samples.size), max(1, round(motion[-1] * _BLOCKS_PER_SECOND)))
     for number, part in enumerate(blocks):
         start = round(float(part[0]) / record.rate * NANOSECONDS)

@@ -12,6 +12,7 @@ from hd_monitor.diagnosis import Component
 from hd_monitor.diagnosis.limitations import describe_limitation
 from hd_monitor.diagnosis.status import status_of
 from hd_monitor.monitor import Monitor
+from hd_monitor.sources import Quantity
 
 LONG, SHORT = "ur-20_02_12-50sec_12harm", "ur-20_02_06-20sec_10harm"
 J1_ONLY, J5_ONLY = "ur-20_01_22-joint_1", "ur-20_01_22-joint_5"
@@ -47,7 +48,9 @@ def test_joint_2_is_named(ur10e, file):
 def test_the_monitor_shows_joint_2_in_its_status(ur10e, file):
     samples, parameters = ur10e(file, 2), settings_of(**UR10E)
     monitor = Monitor(parameters)
-    monitor.add_motion(np.rint(1e9 * samples.times).astype(np.int64), samples.angle, samples.speed, samples.effort)
+    monitor.add(
+        Quantity.MOTION, np.rint(1e9 * samples.times).astype(np.int64), samples.angle, samples.speed, samples.effort
+    )
     assessment = monitor.finish()
     assert assessment is not None
     status = status_of(assessment, "joint_2")
