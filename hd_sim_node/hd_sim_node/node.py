@@ -13,7 +13,7 @@ from rclpy.parameter import Parameter as RosParameter
 from rclpy.qos import QoSProfile
 
 from hd_monitor.errors import HdMonitorError
-from hd_monitor.ros.declaration import answer, declare, describe
+from hd_monitor.ros.declaration import answer, declare
 from hd_monitor.ros.managed_node import ManagedNode, logged, run
 from hd_monitor.ros.queue import queue_depth
 
@@ -65,11 +65,10 @@ class HdSimNode(ManagedNode):
         settings = RigSettings.from_mapping(pick(given, NODE_PARAMETERS))
         for parameter in PARAMETERS:
             fixed = not parameter.name.startswith(CHANGEABLE)
-            declare(self, parameter.name, settings.values[parameter.name], describe(parameter, read_only=fixed))
+            declare(self, parameter, settings.values[parameter.name], read_only=fixed)
         for parameter in NODE_PARAMETERS:
             value = parameter.check(given.get(parameter.name, parameter.default))
-            fixed = parameter.name != "time_scale"
-            declare(self, parameter.name, value, describe(parameter, read_only=fixed))
+            declare(self, parameter, value, read_only=parameter.name != "time_scale")
 
     def _settings(self, changes: Sequence[RosParameter] = ()) -> RigSettings:
         names = [parameter.name for parameter in PARAMETERS]

@@ -11,11 +11,12 @@ from ..errors import HdMonitorError
 from ..parameter import Parameter
 
 
-def declare(node: Node, name: str, value: Any, descriptor: ParameterDescriptor) -> None:
-    """Declare a parameter with its checked value, even if ROS declared it with the raw one."""
+def declare(node: Node, parameter: Parameter, value: Any, *, read_only: bool, below: str = "") -> None:
+    """Declare a parameter, its name after the prefix `below`, with its checked value in place of ROS's raw one."""
+    name = below + parameter.name
     if node.has_parameter(name):
         node.undeclare_parameter(name)
-    node.declare_parameter(name, value, descriptor, ignore_override=True)
+    node.declare_parameter(name, value, describe(parameter, read_only=read_only), ignore_override=True)
 
 
 def describe(parameter: Parameter, *, read_only: bool) -> ParameterDescriptor:

@@ -7,7 +7,6 @@ from rclpy.qos import QoSProfile
 from std_msgs.msg import Float64MultiArray
 
 from .. import contract
-from ..diagnosis.absence import Explain
 from ..settings import JointSettings
 from ..sources import Quantity
 from .joint_watch import JointWatch
@@ -43,10 +42,11 @@ class JointChannel:
         self._node = node
         self._below = joint if several else None
         self._subscriptions: dict[Quantity, DrainedSubscription] = {}
+        self._motion: DrainedSubscription | None = None
         self._zoom = self._advertise(contract.ZOOM_SPECTRUM)
         self._rms = self._advertise(contract.RMS_CURVE)
         self.joint = joint
-        self.watch = JointWatch(joint, settings, now)
+        self.watch = JointWatch(joint, settings, now, self._explain)
 
     def _advertise(self, topic: str) -> LifecyclePublisher:
         qos = QoSProfile(depth=10)
@@ -65,8 +65,9 @@ class JointChannel:
         """Topics that the joint alone listens to; none while closed or without a sensor."""
         return [subscription.topic for subscription in self._subscriptions.values()]
 
-    def open(self, now: int) -> None:
-        """Subscribe; silence counts from `now` [ns]."""
+    def open(self, motion: DrainedSubscription, now: int) -> None:
+        """Subscribe to what is the joint's own, `motion` being all joints'; silence counts from `now` [ns]."""
+        self._motion = motion
         self._warn_of_short_queue()
         for quantity, source in self.settings.sources.items():
             if quantity is not Quantity.MOTION:
@@ -94,33 +95,23 @@ class JointChannel:
         for subscription in self._subscriptions.values():
             subscription.close()
         self._subscriptions = {}
+        self._motion = None
 
     def destroy(self) -> None:
         """Destroy the publishers."""
         self._node.destroy_lifecycle_publisher(self._zoom)
         self._node.destroy_lifecycle_publisher(self._rms)
 
-    def feed(self, motion: Sequence[bytes], now: int, explain_motion: Explain) -> None:
+    def feed(self, motion: Sequence[bytes], now: int) -> None:
         """Hand the joint's new messages to its watch; publish the curves where that led to a new assessment."""
         messages = {Quantity.MOTION: motion}
         messages |= {quantity: subscription.drain() for quantity, subscription in self._subscriptions.items()}
-        if self.watch.feed(messages, now, self._explain(explain_motion)):
+        if self.watch.feed(messages, now):
             self._publish_curves()
 
-    def check(self, now: int, explain_motion: Explain) -> None:
-        """Look for lost inputs."""
-        self.watch.check(now, self._explain(explain_motion))
-
-    def change_limits(self, settings: JointSettings) -> None:
-        """Put other ``diagnosis.*`` parameters in force."""
-        self.watch.change_limits(settings)
-
-    def _explain(self, explain_motion: Explain) -> Explain:
-        def explain(quantity: Quantity) -> str:
-            own = self._subscriptions.get(quantity)
-            return explain_motion(quantity) if own is None else own.explain_silence()
-
-        return explain
+    def _explain(self, quantity: Quantity) -> str:
+        subscription = self._subscriptions.get(quantity, self._motion)
+        return subscription.explain_silence() if subscription is not None else ""
 
     def _publish_curves(self) -> None:
         if (zoom := self.watch.zoom()) is not None:

@@ -34,6 +34,8 @@ class JointWatch:
     settings : JointSettings
     now : int
         The node's time [ns]; silence counts from here.
+    explain : callable
+        Asked where an input is lost.
 
     Attributes
     ----------
@@ -45,9 +47,10 @@ class JointWatch:
         Traceback of the newest one; empty if there is none.
     """
 
-    def __init__(self, joint: str, settings: JointSettings, now: int) -> None:
+    def __init__(self, joint: str, settings: JointSettings, now: int, explain: Explain) -> None:
         self.joint = joint
         self.settings = settings
+        self._explain = explain
         self.errors = 0
         self.last_error = ""
         self._presence = Presence(settings.sources, round(settings.input.timeout * NANOSECONDS))
@@ -68,17 +71,8 @@ class JointWatch:
 
     # What the node calls --------------------------------------------------------------------------------------------
 
-    def feed(self, messages: Mapping[Quantity, Sequence[bytes]], now: int, explain: Explain) -> bool:
-        """Hand over serialised messages as they came; return True if that led to a new assessment.
-
-        Parameters
-        ----------
-        messages : mapping of Quantity to sequence of bytes
-        now : int
-            The node's time [ns].
-        explain : callable
-            Asked where an input is lost.
-        """
+    def feed(self, messages: Mapping[Quantity, Sequence[bytes]], now: int) -> bool:
+        """Hand over serialised messages at the node's time [ns]; return True if that led to a new assessment."""
         try:
             stamps = self._monitor.newest_stamps
             for quantity, new in messages.items():
@@ -89,14 +83,14 @@ class JointWatch:
                         self._presence.note(quantity, now, now if stamps.get(quantity) != before else None)
             assessments = self._monitor.advance()
             for assessment in assessments:
-                self._show(self._explained(assessment, now, explain))
+                self._show(self._explained(assessment, now))
         except Exception as error:
             self._fail(error, now)
             return False
         self._assessed = self._assessed or bool(assessments)
         return bool(assessments)
 
-    def check(self, now: int, explain: Explain) -> None:
+    def check(self, now: int) -> None:
         """Look for inputs that are silent or useless; to be called once a second.
 
         A time `now` of 0 says that a simulated clock is used but has not begun.
@@ -108,7 +102,7 @@ class JointWatch:
             if not now:
                 self._show(self._other(now, NO_SIMULATED_TIME))
             elif losses := self._presence.losses(now):
-                self._show(self._other(now, self._describe(losses, explain)))
+                self._show(self._other(now, self._describe(losses)))
         except Exception as error:
             self._fail(error, now)
 
@@ -146,17 +140,17 @@ class JointWatch:
 
     # ----------------------------------------------------------------------------------------------------------------
 
-    def _describe(self, losses: Sequence[Loss], explain: Explain) -> Verdict:
+    def _describe(self, losses: Sequence[Loss]) -> Verdict:
         fault = self._monitor.silence(0).quality.last_fault
-        return lost_by_clock(losses, self._monitor.newest_stamps, fault, explain)
+        return lost_by_clock(losses, self._monitor.newest_stamps, fault, self._explain)
 
-    def _explained(self, assessment: Assessment, now: int, explain: Explain) -> Assessment:
+    def _explained(self, assessment: Assessment, now: int) -> Assessment:
         """Add to a lost input what the monitor, which sees stamps only, cannot know."""
         if assessment.verdict.fault_code is not FaultCode.INPUT_LOST:
             return assessment
         stamps = self._monitor.newest_stamps
         if losses := self._presence.losses(now):
-            return replace(assessment, verdict=self._describe(losses, explain))
+            return replace(assessment, verdict=self._describe(losses))
         if len(stamps) > 1 and max(stamps.values()) - min(stamps.values()) >= self._presence.timeout * NANOSECONDS:
             return replace(assessment, verdict=stamped_by_two_clocks(stamps))
         return assessment

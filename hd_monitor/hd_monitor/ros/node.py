@@ -12,7 +12,7 @@ from ..diagnosis.status import Status
 from ..diagnosis.verdict import Level
 from ..errors import HdMonitorError
 from ..settings import JointSettings
-from ..sources import JOINT_STATES, Quantity
+from ..sources import JOINT_STATES
 from .joint_channel import JointChannel, queue_depth_of
 from .managed_node import ManagedNode, logged, run
 from .messages import diagnostic_array, diagnostic_status
@@ -89,7 +89,7 @@ class HdMonitorNode(ManagedNode):
             reliability="reliable" if reliable else "best_effort",
         )
         for channel in self._channels:
-            channel.open(self._now())
+            channel.open(self._motion, self._now())
         self._own_timers = [
             self.create_timer(DRAIN_PERIOD, self._drain, clock=self._steady),
             self.create_timer(STATUS_PERIOD, self._publish_all, clock=self._steady),
@@ -126,14 +126,14 @@ class HdMonitorNode(ManagedNode):
         motion = self._motion.drain()
         now = self._now()
         for channel in self._channels:
-            channel.feed(motion, now, self._explain_motion)
+            channel.feed(motion, now)
             for status in self._log_news(channel):
                 self._publish([(channel, status)])
 
     def _publish_all(self) -> None:
         now = self._now()
         for channel in self._channels:
-            channel.check(now, self._explain_motion)
+            channel.watch.check(now)
             self._log_news(channel)
         self._publish([(channel, channel.watch.status()) for channel in self._channels])
 
@@ -147,9 +147,6 @@ class HdMonitorNode(ManagedNode):
         """Time by which silence counts [ns]: simulated with ``use_sim_time``, else a clock that cannot be set back."""
         simulated = self.get_parameter("use_sim_time").value
         return int((self.get_clock() if simulated else self._steady).now().nanoseconds)
-
-    def _explain_motion(self, quantity: Quantity) -> str:
-        return self._motion.explain_silence() if self._motion is not None else ""
 
     def _log_transition(self, channel: JointChannel, status: Status) -> None:
         text = f"{channel.joint}: {status.message}"
@@ -175,7 +172,7 @@ class HdMonitorNode(ManagedNode):
 
     def _change_limits(self, settings: dict[str, JointSettings]) -> None:
         for channel in self._channels:
-            channel.change_limits(settings[channel.joint])
+            channel.watch.change_limits(settings[channel.joint])
 
     def _offer(self, name: str, action: str, channels: list[JointChannel]) -> None:
         joints = ", ".join(channel.joint for channel in channels)

@@ -4,18 +4,20 @@ import re
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
+from rcl_interfaces.msg import SetParametersResult
 from rclpy.node import Node
 from rclpy.parameter import Parameter as RosParameter
 
 from ..errors import ParameterError
+from ..parameter import Parameter
 from ..settings import NODE_PARAMETERS, PARAMETERS, JointSettings, set_aside_foreign, split_joints
-from .declaration import answer, declare, describe
+from .declaration import answer, declare
 
-JOINTS = "joints"
-JOINTS_DESCRIPTION = (
-    "names of the joints watched; with several, each has its topics below its name and may override any parameter "
-    "there (<joint>.reducer.serial); the values at the top level are common to all"
+JOINTS = Parameter(
+    name="joints",
+    default="",
+    description="names of the joints watched; with several, each has its topics below its name and may override any "
+    "parameter there (<joint>.reducer.serial); the values at the top level are common to all",
 )
 CHANGEABLE = "diagnosis."
 """Prefix of the parameters that may be changed while the node runs; all others take effect at its start only."""
@@ -58,10 +60,10 @@ class JointParameters:
         self.settings = split_joints(given)
         joints = list(self.settings)
         check_names(joints)
-        declare(node, JOINTS, joints, ParameterDescriptor(description=JOINTS_DESCRIPTION, read_only=True))
+        declare(node, JOINTS, joints, read_only=True)
         for parameter in NODE_PARAMETERS:
             value = parameter.check(given.get(parameter.name, parameter.default))
-            declare(node, parameter.name, value, describe(parameter, read_only=True))
+            declare(node, parameter, value, read_only=True)
         own = any(name.startswith(f"{joint}.") for name in given for joint in joints)
         self._by_joint = len(joints) > 1 or own
         common = split_joints({name: value for name, value in given.items() if not _below(name, joints)})[joints[0]]
@@ -76,9 +78,7 @@ class JointParameters:
         values = dict(settings.values)
         for parameter in PARAMETERS:
             read_only = fixed or not parameter.name.startswith(CHANGEABLE)
-            declare(
-                self._node, prefix + parameter.name, values[parameter.name], describe(parameter, read_only=read_only)
-            )
+            declare(self._node, parameter, values[parameter.name], read_only=read_only, below=prefix)
 
     def _values(self) -> dict[str, Any]:
         return {name: self._node.get_parameter(name).value for name in self._node.list_parameters([], 0).names}

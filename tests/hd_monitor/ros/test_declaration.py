@@ -21,11 +21,11 @@ def test_every_numeric_parameter_has_a_range() -> None:
 
 
 def test_a_checked_value_takes_the_place_of_the_raw_one(peer: Any) -> None:
-    from hd_monitor.ros.declaration import declare, describe
+    from hd_monitor.ros.declaration import declare
 
     (parameter,) = (parameter for parameter in PARAMETERS if parameter.name == "load.torque")
     peer.node.declare_parameter("load.torque", 3)
-    declare(peer.node, "load.torque", 3.0, describe(parameter, read_only=True))
+    declare(peer.node, parameter, 3.0, read_only=True)
     assert peer.node.get_parameter("load.torque").value == 3.0
     assert peer.node.describe_parameter("load.torque").read_only
 

@@ -23,7 +23,7 @@ def explain(name: Quantity) -> str:
 
 def watch_of(**parameters: Any) -> JointWatch:
     settings = {name.replace("__", "."): value for name, value in parameters.items()}
-    return JointWatch("elbow", JointSettings.from_mapping(settings), START)
+    return JointWatch("elbow", JointSettings.from_mapping(settings), START, explain)
 
 
 def stamp_of(message: Any, time: float) -> Any:
@@ -66,9 +66,9 @@ def test_it_waits_before_it_complains() -> None:
     status = watch.status()
     assert (status.level, status.hardware_id) == (1, "A1")
     assert status.message.startswith("Waiting for the first data")
-    watch.check(START + SECOND, explain)
+    watch.check(START + SECOND)
     assert watch.status().value("fault_code") == "HD_UNDETERMINED"
-    watch.check(START + 2 * SECOND, explain)
+    watch.check(START + 2 * SECOND)
     assert watch.status().value("fault_code") == "HD_INPUT_LOST"
     assert "because of the vibration" in watch.status().message
     assert "because of the motion" in watch.status().message
@@ -76,9 +76,9 @@ def test_it_waits_before_it_complains() -> None:
 
 def test_good_data_is_assessed_and_the_transition_handed_out_once() -> None:
     watch = watch_of(input__source="accel_stamped")
-    watch.check(START + 2 * SECOND, explain)
+    watch.check(START + 2 * SECOND)
     assert [s.value("fault_code") for s in watch.take_transitions()] == ["HD_INPUT_LOST"]
-    assert watch.feed(inputs_of(accelerations(100, 2.5), joint_states(100, 2.5)), START + 3 * SECOND, explain)
+    assert watch.feed(inputs_of(accelerations(100, 2.5), joint_states(100, 2.5)), START + 3 * SECOND)
     assert [s.value("fault_code") for s in watch.take_transitions()] == ["HD_UNDETERMINED"]
     assert watch.take_transitions() == []
     assert float(watch.status().value("samples")) >= 500
@@ -86,27 +86,27 @@ def test_good_data_is_assessed_and_the_transition_handed_out_once() -> None:
 
 def test_a_check_between_assessments_leaves_them_alone() -> None:
     watch = watch_of(input__source="accel_stamped")
-    watch.feed(inputs_of(accelerations(100, 2.5), joint_states(100, 2.5)), START + 3 * SECOND, explain)
+    watch.feed(inputs_of(accelerations(100, 2.5), joint_states(100, 2.5)), START + 3 * SECOND)
     before = watch.present
-    watch.check(START + 4 * SECOND, explain)
-    watch.check(START + 4 * SECOND + 1, explain)
+    watch.check(START + 4 * SECOND)
+    watch.check(START + 4 * SECOND + 1)
     assert watch.present is before
 
 
 def test_a_clock_that_is_set_back_starts_the_silence_anew() -> None:
     watch = watch_of()
-    watch.check(START - 3 * SECOND, explain)
-    watch.check(START - 2 * SECOND, explain)
+    watch.check(START - 3 * SECOND)
+    watch.check(START - 2 * SECOND)
     assert watch.status().value("fault_code") == "HD_UNDETERMINED"
-    watch.check(START - SECOND, explain)
+    watch.check(START - SECOND)
     assert watch.status().value("fault_code") == "HD_INPUT_LOST"
 
 
 def test_a_simulated_clock_that_has_not_begun_is_named() -> None:
-    watch = JointWatch("elbow", JointSettings.from_mapping(), 0)
-    watch.check(0, explain)
+    watch = JointWatch("elbow", JointSettings.from_mapping(), 0, explain)
+    watch.check(0)
     assert "/clock" in watch.status().message
-    watch.check(1000 * SECOND, explain)  # its first time is not a thousand seconds of silence
+    watch.check(1000 * SECOND)  # its first time is not a thousand seconds of silence
     assert watch.status().value("fault_code") == "HD_UNDETERMINED"
 
 
@@ -118,24 +118,24 @@ def test_an_error_of_the_core_is_shown_and_the_joint_starts_afresh(monkeypatch: 
         raise ZeroDivisionError("made for the test")
 
     monkeypatch.setattr(Monitor, "advance", fail)
-    assert not watch.feed(inputs_of(accelerations(100, 1), joint_states(100, 1)), START + SECOND, explain)
+    assert not watch.feed(inputs_of(accelerations(100, 1), joint_states(100, 1)), START + SECOND)
     status = watch.status()
     assert (status.level, status.value("fault_code")) == (2, "HD_INTERNAL_ERROR")
     assert "ZeroDivisionError: made for the test" in status.message
     assert "made for the test" in watch.last_error
     assert [s.value("fault_code") for s in watch.take_transitions()] == ["HD_INTERNAL_ERROR"]
     monkeypatch.setattr(Monitor, "advance", advance)
-    assert watch.feed(inputs_of(accelerations(101, 2.5), joint_states(101, 2.5)), START + 3 * SECOND, explain)
+    assert watch.feed(inputs_of(accelerations(101, 2.5), joint_states(101, 2.5)), START + 3 * SECOND)
     assert watch.status().value("fault_code") == "HD_UNDETERMINED"
     assert watch.status().value("internal errors") == "1"
 
 
 def test_new_limits_keep_the_evidence() -> None:
     watch = watch_of(input__source="accel_stamped")
-    watch.feed(inputs_of(accelerations(100, 2.5), joint_states(100, 2.5)), START + 3 * SECOND, explain)
+    watch.feed(inputs_of(accelerations(100, 2.5), joint_states(100, 2.5)), START + 3 * SECOND)
     samples = watch.status().value("samples")
     watch.change_limits(JointSettings.from_mapping({"input.source": "accel_stamped", "diagnosis.warn_index": 0.07}))
-    watch.feed(inputs_of(accelerations(102.5, 1), joint_states(102.5, 1)), START + 4 * SECOND, explain)
+    watch.feed(inputs_of(accelerations(102.5, 1), joint_states(102.5, 1)), START + 4 * SECOND)
     assert watch.status().value("warn limit (%)") == "7.000"
     assert float(watch.status().value("samples")) > float(samples)
 
@@ -149,12 +149,12 @@ def test_new_limits_keep_the_evidence() -> None:
     ],
 )
 def test_only_inputs_that_are_used_are_missed(source: str, load: str, inputs: set[Quantity]) -> None:
-    watch = watch_of(input__source=source, load__source=load)
     asked: list[Quantity] = []
 
     def note(name: Quantity) -> str:
         asked.append(name)
         return "silence"
 
-    watch.check(START + 10 * SECOND, note)
+    settings = JointSettings.from_mapping({"input.source": source, "load.source": load})
+    JointWatch("elbow", settings, START, note).check(START + 10 * SECOND)
     assert set(asked) == inputs
