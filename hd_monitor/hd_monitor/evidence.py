@@ -5,14 +5,14 @@ from dataclasses import replace
 
 import numpy as np
 
+from .acquisition.agreement import compare_motion
 from .acquisition.record import Record
 from .acquisition.recorder import AssembledPeriod
 from .arrays import FloatArray
-from .identification.checks.motion import compare_motion
 from .identification.identifier import Identifier
-from .identification.limitation import Limitation
 from .identification.result import Identification
 from .identification.sensorless.identifier import SensorlessIdentifier
+from .limitation import Limitation
 from .orders.rms_curve import RmsAccumulator, SpeedBin
 from .orders.steady import SteadySegment
 from .settings import JointSettings

@@ -24,10 +24,10 @@ import numpy as np
 
 from hd_monitor.diagnosis import Component, Judge
 from hd_monitor.identification.identifier import Identifier
-from hd_monitor.identification.limitation import LimitationCode
 from hd_monitor.identification.result import Identification
 from hd_monitor.identification.sensorless import identifier as sensorless
 from hd_monitor.identification.teeth.watch import ToothWatch
+from hd_monitor.limitation import LimitationCode
 from hd_monitor.reducer import LinePair
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from ..identification.limitation import Limitation, LimitationCode
+from ..limitation import Limitation, LimitationCode
 
 _BOTH_LINES = "{order:g} and {next_order:g} cycles per output revolution"
 _BOTH_DIRECTIONS = "; ".join(

@@ -8,11 +8,11 @@ from typing import Self
 import numpy as np
 
 from ..arrays import ComplexArray, FloatArray
+from ..limitation import Limitation
 from ..model.critical_speed import critical_speed
 from ..model.parameters import ParametricModel
 from ..reducer import LinePair
 from .fit.gauss_newton import FitStatus
-from .limitation import Limitation
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

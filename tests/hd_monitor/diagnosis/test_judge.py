@@ -7,8 +7,8 @@ import pytest
 
 from hd_monitor.diagnosis.judge import Judge
 from hd_monitor.diagnosis.verdict import Component, FaultCode, Level, Verdict
-from hd_monitor.identification.limitation import LimitationCode, blocker, doubt
 from hd_monitor.identification.result import Identification
+from hd_monitor.limitation import LimitationCode, blocker, doubt
 from hd_monitor.reducer import LinePair
 from hd_monitor.settings import JointSettings
 

@@ -5,7 +5,7 @@ from string import Formatter
 import pytest
 
 from hd_monitor.diagnosis.limitations import SENTENCES, describe_limitation
-from hd_monitor.identification.limitation import LimitationCode, blocker
+from hd_monitor.limitation import LimitationCode, blocker
 
 
 @pytest.mark.parametrize("code", LimitationCode)

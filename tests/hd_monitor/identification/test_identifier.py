@@ -9,7 +9,7 @@ from tests.simulated.cases import Case, simulate
 from hd_monitor.diagnosis.limitations import describe_limitation
 from hd_monitor.identification.fit import unknowns
 from hd_monitor.identification.identifier import Identifier
-from hd_monitor.identification.limitation import LimitationCode
+from hd_monitor.limitation import LimitationCode
 from hd_monitor.model import Dynamics, ParametricModel, StiffnessSeries, Torque, line_pairs
 
 MODEL = ParametricModel(

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import BoolArray, FloatArray
+from ...limitation import Limitation, LimitationCode, blocker, doubt
 from ...reducer import LinePair, Reducer
 from ..fit.gauss_newton import Fit
 from ..fit.indexes import Indexes
 from ..fit.linearisation import Predictor
 from ..fit.score_test import ScoreTest
 from ..fit.unknowns import TORQUE_LINES, Unknowns
-from ..limitation import Limitation, LimitationCode, blocker, doubt
 from .coverage import Coverage
 
 LEAST_TRAVEL = math.radians(85.0)

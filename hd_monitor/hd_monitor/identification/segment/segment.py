@@ -12,10 +12,10 @@ from ...arrays import BoolArray, FloatArray
 from ...errors import ParameterError
 from ...orders.orthonormal import orthonormal
 from ...orders.regression import line_columns
+from ...orders.tones import foreign_tones
 from ...reducer import Reducer
 from .decimation import decimate
 from .path import Motion, Path, paths_along
-from .tones import foreign_tones
 from .torque import own_acceleration, regress_torque
 
 FREQUENCY_MARGIN = 1.25

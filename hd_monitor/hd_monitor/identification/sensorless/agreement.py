@@ -8,9 +8,9 @@ import numpy as np
 from scipy.stats import norm
 from scipy.stats import t as t_distribution
 
+from ...limitation import Limitation, LimitationCode, blocker
 from ...orders.regression import CHANCE, LineFit
 from ...reducer import LinePair
-from ..limitation import Limitation, LimitationCode, blocker
 from .pooling import GroupFit
 
 AGREEMENT = 0.9

@@ -8,12 +8,12 @@ import numpy as np
 
 from ...acquisition.record import JointSamples
 from ...arrays import FloatArray
+from ...limitation import Limitation, LimitationCode, blocker
 from ...orders.joint_segment import JointSegment, JointSegmentCutter, one_speed
 from ...orders.line_orders import LineOrders
 from ...orders.regression import LineFit, solve
 from ...reducer import LinePair
 from ...settings import JointSettings
-from ..limitation import Limitation, LimitationCode, blocker
 from ..result import Identification, LineEstimate
 from ..teeth.candidates import ToothPair, surroundings, with_neighbours
 from ..teeth.ranking import rank

@@ -2,8 +2,8 @@
 
 import math
 
+from ...limitation import Limitation, LimitationCode, blocker, doubt
 from ...reducer import LinePair, Mount, Reducer
-from ..limitation import Limitation, LimitationCode, blocker, doubt
 
 _ENOUGH_MESSAGES = 100
 _NOTABLE, _NEARLY_ALL = 0.1, 0.9  # parts of the motion that are too fast

@@ -7,10 +7,10 @@ from enum import StrEnum
 
 import numpy as np
 
+from ...limitation import Limitation, LimitationCode, blocker
 from ...orders.line_orders import LineOrders
 from ...orders.regression import CHANCE, LineFit
 from ...reducer import Reducer
-from ..limitation import Limitation, LimitationCode, blocker
 from .candidates import Candidate, ToothPair
 
 MARGIN = math.log(1000.0)

@@ -5,10 +5,10 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from ...limitation import Limitation
 from ...model.parameters import Dynamics
 from ...reducer import Reducer
 from ..fit.gauss_newton import Fit
-from ..limitation import Limitation
 from .candidates import ToothPair, strongest
 from .ranking import contradiction, rank, shows_two_lines
 from .spectrum import OrderSpectrum, with_segment

@@ -8,12 +8,12 @@ import numpy as np
 from ...acquisition.record import Record
 from ...arrays import FloatArray
 from ...errors import HdMonitorError
+from ...limitation import LimitationCode, blocker
 from ...settings import JointSettings
 from ..checks.limitations import CONTRADICTION
 from ..fit.gauss_newton import Fit
 from ..fit.multistart import multistart_newest
 from ..fit.score_test import score_tests
-from ..limitation import LimitationCode, blocker
 from ..teeth.trial import ToothTrial
 from ..teeth.watch import ToothWatch
 from .conclusion import conclude, sureness

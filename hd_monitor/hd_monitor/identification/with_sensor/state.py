@@ -4,12 +4,12 @@ import math
 from dataclasses import dataclass, field, replace
 
 from ...arrays import BoolArray, FloatArray
+from ...limitation import Limitation
 from ..checks.coverage import Coverage
 from ..checks.residual import LineResidual
 from ..fit.information import Information
 from ..fit.noise import NoiseFloor
 from ..fit.unknowns import Unknowns
-from ..limitation import Limitation
 from ..result import Identification
 from ..segment.preparation import Setup
 from ..segment.segment import Segment

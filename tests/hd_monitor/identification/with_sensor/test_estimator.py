@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from tests.simulated.cases import Case, simulate
 
-from hd_monitor.identification.limitation import LimitationCode
 from hd_monitor.identification.with_sensor.estimator import Estimator
 from hd_monitor.identification.with_sensor.state import WINDOW
+from hd_monitor.limitation import LimitationCode
 from hd_monitor.model import ParametricModel, StiffnessSeries
 
 TRUTH = Case(

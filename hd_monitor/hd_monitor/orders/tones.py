@@ -4,7 +4,7 @@ import numpy as np
 from scipy import fft
 from scipy.signal import get_window
 
-from ...arrays import FloatArray
+from ..arrays import FloatArray
 
 MOST_TONES = 4
 """Tones that are removed from a segment at most."""

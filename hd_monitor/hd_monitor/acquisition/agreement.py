@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...acquisition.record import JointSamples
 from ..limitation import Limitation, LimitationCode, blocker
+from .record import JointSamples
 
 WINDOW = 0.05
 """Time [s] over which the two are compared: longer than the step between joint states of any useful rate."""

@@ -5,10 +5,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from hd_monitor.acquisition.agreement import compare_motion
 from hd_monitor.acquisition.record import JointSamples
 from hd_monitor.diagnosis.limitations import describe_limitation
-from hd_monitor.identification.checks.motion import compare_motion
-from hd_monitor.identification.limitation import LimitationCode
+from hd_monitor.limitation import LimitationCode
 
 TIMES = np.arange(1000) / 1000.0
 REDUCTION = 80.0

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from hd_monitor.identification.segment.tones import MOST_TONES, foreign_tones
 from hd_monitor.orders.regression import line_columns
+from hd_monitor.orders.tones import MOST_TONES, foreign_tones
 
 PERIOD, COUNT = 1e-3, 3000
 TIMES = np.arange(COUNT) * PERIOD
