@@ -31,6 +31,11 @@ class Monitor:
     identifier : Identifier or SensorlessIdentifier, optional
         One that goes on with what it knows, from an earlier recording of the same joint say.
 
+    Attributes
+    ----------
+    latest : Assessment or None
+        The newest assessment, if any.
+
     Notes
     -----
     Every whole ``analysis.period`` of the message stamps is assessed once, as soon as all inputs are complete up to
@@ -54,7 +59,7 @@ class Monitor:
         self._presence = Presence(settings.sources, round(settings.input.timeout * NANOSECONDS))
         self._evidence = Evidence(settings, identifier)
         self._judge = Judge(settings)
-        self._latest: Assessment | None = None
+        self.latest: Assessment | None = None
 
     # Feeding -------------------------------------------------------------------------------------------------------
 
@@ -88,11 +93,6 @@ class Monitor:
 
     # Results -------------------------------------------------------------------------------------------------------
 
-    @property
-    def latest(self) -> Assessment | None:
-        """The newest assessment, if any."""
-        return self._latest
-
     def advance(self) -> list[Assessment]:
         """Assess every period that has become complete; oldest first."""
         return [self._assess(period) for period in self._intake.complete()]
@@ -100,10 +100,10 @@ class Monitor:
     def finish(self) -> Assessment | None:
         """Return what a node would show at the end of the data; a bag shorter than a period is assessed as it is."""
         self.advance()
-        if self._latest is None:
+        if self.latest is None:
             for period in self._intake.rest():
                 self._assess(period)
-        return self._latest
+        return self.latest
 
     def silence(self, now: int) -> Assessment:
         """Say that nothing came for ``input.timeout`` until `now` [ns] by the caller's clock; the evidence is kept."""
@@ -156,8 +156,8 @@ class Monitor:
             verdict = self._judge.judge(found, missing)
             if found is not None and self._recorder.torque_source == "assumed":
                 verdict = with_assumed_torque(verdict, self.settings.load.torque)
-        self._latest = self._pack(period.end, verdict, assembled)
-        return self._latest
+        self.latest = self._pack(period.end, verdict, assembled)
+        return self.latest
 
     def _pack(self, stamp: int, verdict: Verdict, assembled: AssembledPeriod | None) -> Assessment:
         evidence = self._evidence

@@ -63,17 +63,14 @@ def even_stamps(times: FloatArray, rows: FloatArray) -> FloatArray:
 
 
 class Track:
-    """Stamped rows, fed a stretch at a time and kept as long as interpolation needs them.
+    """Stamped rows, fed a stretch at a time and kept as long as interpolation needs them."""
 
-    Parameters
-    ----------
-    columns : int
-        Values in a row.
-    """
+    columns: int
+    """Values in a row."""
 
-    def __init__(self, columns: int) -> None:
+    def __init__(self) -> None:
         self._times = np.empty(0)
-        self._rows = np.empty((0, columns))
+        self._rows = np.empty((0, self.columns))
 
     def extend(self, times: FloatArray, rows: FloatArray) -> BoolArray:
         """Append rows, shape (N, columns), with their times [s], shape (N,), increasing.
@@ -97,16 +94,11 @@ class Track:
         first = max(0, last - 2)
         self._times, self._rows = self._times[first:last], self._rows[first:last]
 
-    def clear(self) -> None:
-        """Forget everything."""
-        self._times, self._rows = self._times[:0], self._rows[:0]
-
 
 class TorqueTrack(Track):
     """A measured torque as a function of time."""
 
-    def __init__(self) -> None:
-        super().__init__(1)
+    columns = 1
 
     def at(self, times: FloatArray) -> FloatArray:
         """Interpolate the torque [N·m] at rising `times` [s], shape (N,); NaN outside of the track and in its holes."""
@@ -127,8 +119,7 @@ class MotionTrack(Track):
     The angle is unwrapped: a joint that reports -π after π is assumed to go on turning.
     """
 
-    def __init__(self) -> None:
-        super().__init__(3)
+    columns = 3
 
     def extend(self, times: FloatArray, rows: FloatArray) -> BoolArray:
         """Append joint states; see :meth:`Track.extend`."""

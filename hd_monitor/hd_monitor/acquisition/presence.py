@@ -19,10 +19,11 @@ class Loss(NamedTuple):
 
 @dataclass(slots=True)
 class _Heard:
-    """When an input was last heard, and last of use [ns]; None while the clock has not begun."""
+    """When an input was last heard, and last of use [ns], None while the clock has not begun; whether it ever was."""
 
     came: int | None = None
     useful: int | None = None
+    ever: bool = False
 
 
 class Presence:
@@ -41,7 +42,6 @@ class Presence:
     def __init__(self, quantities: Iterable[Quantity], timeout: int) -> None:
         self._timeout = timeout
         self._heard = {quantity: _Heard() for quantity in quantities}
-        self._absent = list(self._heard)
 
     @property
     def timeout(self) -> float:
@@ -51,7 +51,7 @@ class Presence:
     @property
     def absent(self) -> tuple[Quantity, ...]:
         """Inputs of which nothing has come so far."""
-        return tuple(self._absent)
+        return tuple(quantity for quantity, heard in self._heard.items() if not heard.ever)
 
     def start(self, now: int | None) -> None:
         """Count silence from `now` [ns]; None: from the first look, as the clock has not begun."""
@@ -60,9 +60,8 @@ class Presence:
 
     def note(self, quantity: Quantity, came: int, useful: int | None = None) -> None:
         """Note when an input came, and when it was of use [ns]; None: it was not."""
-        if quantity in self._absent:
-            self._absent.remove(quantity)
         if (heard := self._heard.get(quantity)) is not None:
+            heard.ever = True
             heard.came = came
             heard.useful = heard.useful if useful is None else useful
 

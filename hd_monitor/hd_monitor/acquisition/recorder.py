@@ -72,18 +72,15 @@ class Recorder:
         self._full_scale = settings.input.clipping_limit
         self._load = settings.load
         self._has_sensor = Quantity.TORQUE in settings.sources
-        self._track = MotionTrack()
-        self._torque_track = TorqueTrack()
-        self._grid: _Grid | None = None
-        self._joined = False
         self._counts: dict[str, Any] = {}
         self.torque_source = "unknown"
+        self.cut()
 
     def cut(self) -> None:
         """Forget the motion and the grid: the next samples have another time base."""
-        self._track.clear()
-        self._torque_track.clear()
-        self._grid = None
+        self._track = MotionTrack()
+        self._torque_track = TorqueTrack()
+        self._grid: _Grid | None = None
         self._joined = False
 
     def count(self, **changes: int | float | str) -> None:
@@ -174,7 +171,7 @@ class Recorder:
         if grid is not None:
             missing = round((clock.start - grid.due) / clock.period)
             if missing:
-                self._hole(max(missing, 1))
+                self.count(gaps=1, lost=max(missing, 1))
             if missing * clock.period > self._max_gap or missing < 0:
                 self._joined, missing = False, 0
         self._grid = _Grid(clock.start + clock.period * (int(number[-1]) + 1), clock.period)
@@ -183,7 +180,7 @@ class Recorder:
             steps = np.diff(number)
             holes = np.flatnonzero(steps > 1)
             for hole in holes.tolist():
-                self._hole(int(steps[hole]) - 1)
+                self.count(gaps=1, lost=int(steps[hole]) - 1)
             cuts = holes[(steps[holes] - 1) * clock.period > self._max_gap] + 1
             bounds[1:1] = cuts.tolist()
         records: list[Record] = []
@@ -241,9 +238,6 @@ class Recorder:
             return np.full(measured.size, self._load.torque)
         self.torque_source = "unknown"
         return np.full(measured.size, math.nan)
-
-    def _hole(self, lost: int) -> None:
-        self.count(gaps=1, lost=lost)
 
     def _count_screened(self, screened: Screened) -> None:
         counts = {name: getattr(screened, name) for name in _FAULTS}

@@ -4,8 +4,7 @@ import array
 from collections.abc import Sequence
 
 import numpy as np
-from builtin_interfaces.msg import Time
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 from std_msgs.msg import Float64MultiArray, MultiArrayDimension, MultiArrayLayout
 
 from ..arrays import FloatArray
@@ -27,13 +26,6 @@ def diagnostic_status(status: Status, name: str) -> DiagnosticStatus:
         hardware_id=status.hardware_id,
         values=[KeyValue(key=key, value=value) for key, value in status.values],
     )
-
-
-def diagnostic_array(statuses: list[DiagnosticStatus], stamp: Time) -> DiagnosticArray:
-    """Bundle statuses."""
-    message = DiagnosticArray(status=statuses)
-    message.header.stamp = stamp
-    return message
 
 
 def zoom_message(zoom: ZoomSpectrum) -> Float64MultiArray:

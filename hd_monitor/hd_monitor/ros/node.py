@@ -15,7 +15,7 @@ from ..settings import JointSettings
 from ..sources import JOINT_STATES
 from .joint_channel import JointChannel, queue_depth_of
 from .managed_node import ManagedNode, logged, run
-from .messages import diagnostic_array, diagnostic_status
+from .messages import diagnostic_status
 from .parameters import JointParameters
 from .subscriptions import DrainedSubscription
 
@@ -141,7 +141,9 @@ class HdMonitorNode(ManagedNode):
         """Publish one status each of some joints."""
         name = self.get_fully_qualified_name()
         bundle = [diagnostic_status(status, f"{name}: {channel.joint} reducer") for channel, status in statuses]
-        self._diagnostics.publish(diagnostic_array(bundle, self.get_clock().now().to_msg()))
+        message = DiagnosticArray(status=bundle)
+        message.header.stamp = self.get_clock().now().to_msg()
+        self._diagnostics.publish(message)
 
     def _now(self) -> int:
         """Time by which silence counts [ns]: simulated with ``use_sim_time``, else a clock that cannot be set back."""

@@ -64,9 +64,9 @@ class JointParameters:
         for parameter in NODE_PARAMETERS:
             value = parameter.check(given.get(parameter.name, parameter.default))
             declare(node, parameter, value, read_only=True)
-        own = any(name.startswith(f"{joint}.") for name in given for joint in joints)
-        self._by_joint = len(joints) > 1 or own
-        common = split_joints({name: value for name, value in given.items() if not _below(name, joints)})[joints[0]]
+        below = tuple(f"{joint}." for joint in joints)
+        self._by_joint = len(joints) > 1 or any(name.startswith(below) for name in given)
+        common = split_joints({name: value for name, value in given.items() if not name.startswith(below)})[joints[0]]
         self._declare("", common, fixed=self._by_joint)
         if self._by_joint:
             for joint, settings in self.settings.items():
@@ -122,7 +122,3 @@ def check_names(joints: Sequence[str]) -> None:
             f"joints has {joint!r}, {trouble}; call it {word!r} there and put the name that joint_states uses into "
             f"{word}.input.joint_name"
         )
-
-
-def _below(name: str, joints: Sequence[str]) -> bool:
-    return any(name.startswith(f"{joint}.") for joint in joints)

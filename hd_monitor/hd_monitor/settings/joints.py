@@ -8,33 +8,29 @@ from ..parameter import flatten
 from .groups import NODE_PARAMETERS, PARAMETERS, ROS_PARAMETERS
 from .joint_settings import JointSettings
 
-_BY_NAME = {parameter.name: parameter for parameter in PARAMETERS}
-_NO_JOINT_NAMES = {parameter.name for parameter in NODE_PARAMETERS} | set(ROS_PARAMETERS)
+_OF_JOINTS = {parameter.name for parameter in PARAMETERS}
+_OF_NO_JOINT = {parameter.name for parameter in NODE_PARAMETERS} | set(ROS_PARAMETERS)
 
 
 def _is_of_the_node(name: str) -> bool:
     """Whether a parameter belongs to the node or to ROS itself, and so to no joint."""
-    return name in _NO_JOINT_NAMES or name.startswith("qos_overrides.")
+    return name in _OF_NO_JOINT or name.startswith("qos_overrides.")
 
 
 _OWN_GROUPS = ("reducer", "dynamics", "input", "analysis", "diagnosis")
 
 
 def set_aside_foreign(given: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:
-    """Part a parameter file that is shared with other nodes: (the monitor's parameters, names of the others').
+    """Split a parameter file that is shared with other nodes: (the monitor's parameters, names of the others').
 
     What stands below a joint or in a group that is the monitor's alone is never foreign, so that a misspelt name is
     still refused by :func:`split_joints`.
     """
     flat = flatten(given)
     joints = flat.get("joints") or ["joint"]
-    own = {*_OWN_GROUPS, *([joints] if isinstance(joints, str) else joints)}
-
-    def foreign(name: str) -> bool:
-        known = name in _BY_NAME or name == "joints" or _is_of_the_node(name)
-        return not known and not any(name.startswith(f"{group}.") for group in own)
-
-    strangers = sorted(name for name in flat if foreign(name))
+    own = tuple(f"{group}." for group in (*_OWN_GROUPS, *([joints] if isinstance(joints, str) else joints)))
+    known = {name for name in flat if name in {"joints", *_OF_JOINTS} or _is_of_the_node(name) or name.startswith(own)}
+    strangers = sorted(flat.keys() - known)
     return {name: value for name, value in flat.items() if name not in strangers}, strangers
 
 
@@ -66,8 +62,8 @@ def split_joints(given: Mapping[str, Any]) -> dict[str, JointSettings]:
     names = isinstance(joints, Sequence) and not isinstance(joints, str) and all(_is_name(joint) for joint in joints)
     if not names or len(set(joints)) != len(joints):
         raise ParameterError(f"joints = {joints!r} must be a list of different names")
-    common = {name: value for name, value in flat.items() if name in _BY_NAME}
-    rest = {name: value for name, value in flat.items() if name not in _BY_NAME}
+    common = {name: value for name, value in flat.items() if name in _OF_JOINTS}
+    rest = {name: value for name, value in flat.items() if name not in _OF_JOINTS}
     settings = {}
     for joint in joints:
         prefix = f"{joint}."
