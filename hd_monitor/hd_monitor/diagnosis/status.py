@@ -57,6 +57,7 @@ def status_of(assessment: Assessment, joint: str) -> Status:
         ("travel needed (deg)", _number(math.degrees(needed), 1)),
         ("signal to noise (dB)", _number(found.signal_to_noise if found else nan, 1)),
         ("misfit", _number(found.misfit if found else nan, 2)),
+        ("fit", found.fit_status.value if found and found.fit_status else "none"),
         ("natural frequency (Hz)", _number(found.natural_frequency if found else nan, 2)),
         ("natural frequency std (Hz)", _number(found.natural_frequency_std if found else nan, 2)),
         ("damping ratio", _number(found.damping_ratio if found else nan, 4)),

@@ -66,6 +66,7 @@ def joint_entry(joint: JointIdentification) -> dict[str, Any]:
         "samples": found.samples,
         "signal_to_noise_db": found.signal_to_noise,
         "misfit": found.misfit,
+        "fit_status": found.fit_status,
         "doubts": [describe_limitation(doubt) for doubt in found.doubts],
         "blockers": [describe_limitation(blocker) for blocker in found.blockers],
         "teeth": _teeth(joint.teeth),

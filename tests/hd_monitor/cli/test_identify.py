@@ -90,8 +90,8 @@ def test_json_holds_everything_that_is_printed(sweep: Path, tmp_path: Path) -> N
     assert {
         "joint", "bags", "source", "relative", "torque_source", "circular_spline", "flexspline", "index_correlation",
         "natural_frequency", "damping_ratio", "load_fluctuation", "instability_speed_rpm", "never_unstable", "lines",
-        "directions", "travel_deg", "samples", "signal_to_noise_db", "misfit", "doubts", "blockers", "teeth",
-        "quality", "parameters", "notes",
+        "directions", "travel_deg", "samples", "signal_to_noise_db", "misfit", "fit_status", "doubts", "blockers",
+        "teeth", "quality", "parameters", "notes",
     } == set(joint)  # fmt: skip
     assert joint["relative"] is False
     assert joint["torque_source"] == "effort"

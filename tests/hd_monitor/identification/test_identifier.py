@@ -8,6 +8,7 @@ from tests.simulated.cases import Case, simulate
 
 from hd_monitor.diagnosis.limitations import describe_limitation
 from hd_monitor.identification.fit import unknowns
+from hd_monitor.identification.fit.gauss_newton import FitStatus
 from hd_monitor.identification.identifier import Identifier
 from hd_monitor.limitation import LimitationCode
 from hd_monitor.model import Dynamics, ParametricModel, StiffnessSeries, Torque, line_pairs
@@ -81,6 +82,16 @@ def test_a_wrong_natural_frequency_is_noticed(factor, motion):
         LimitationCode.NATURAL_FREQUENCY_CONTRADICTED,
         LimitationCode.LINES_UNEXPLAINED,
     }
+
+
+def test_a_value_on_its_bound_is_said_and_not_shown_as_a_measurement():
+    truth = case(motion="run_up", speed=1500.0)
+    result = identify(simulate(truth), truth.settings(**{"dynamics.natural_frequency": 40.0}))
+    assert result.fit_status is FitStatus.ON_BOUND
+    (said,) = [doubt for doubt in result.doubts if doubt.code is LimitationCode.VALUE_ON_BOUND]
+    assert "natural frequency" in describe_limitation(said)
+    assert LimitationCode.NATURAL_FREQUENCY_CORRECTED not in [doubt.code for doubt in result.doubts]
+    assert result.blockers
 
 
 def test_a_lag_between_the_clocks_is_noticed():

@@ -9,7 +9,7 @@ import numpy as np
 from ...arrays import BoolArray, FloatArray
 from ...limitation import Limitation, LimitationCode, blocker, doubt
 from ...reducer import LinePair, Reducer
-from ..fit.gauss_newton import Fit
+from ..fit.gauss_newton import Fit, FitStatus
 from ..fit.indexes import Indexes
 from ..fit.linearisation import Predictor
 from ..fit.score_test import ScoreTest
@@ -156,9 +156,13 @@ def _mean_rpm(fit: FitSummary, reducer: Reducer) -> float:
 def _contradictions(fit: FitSummary) -> Iterator[Limitation]:
     """Yield where the data contradict what was given."""
     u, given, values, tests = fit.unknowns, fit.predictor.given, fit.values, fit.score_tests
+    names = {u.frequency: "natural frequency", u.damping: "damping ratio", u.torque: "torque", u.delay: "clock offset"}
+    bound = {place for place in names if fit.active[place] and abs(values[place]) >= u.bounds()[place]}
+    if fit.fit.status is FitStatus.ON_BOUND:
+        yield doubt(LimitationCode.VALUE_ON_BOUND, names=" and ".join(names[place] for place in sorted(bound)))
     frequency, test = given.natural_frequency, tests[u.frequency]
     if fit.active[u.frequency]:
-        if abs(values[u.frequency]) > _CORRECTED_FREQUENCY:
+        if abs(values[u.frequency]) > _CORRECTED_FREQUENCY and u.frequency not in bound:
             fitted = frequency * math.exp(values[u.frequency])
             yield doubt(LimitationCode.NATURAL_FREQUENCY_CORRECTED, fitted_hz=fitted, given_hz=frequency)
     elif test.significance > CONTRADICTION and abs(test.value) > _CORRECTED_FREQUENCY:
@@ -166,18 +170,13 @@ def _contradictions(fit: FitSummary) -> Iterator[Limitation]:
         yield blocker(
             LimitationCode.NATURAL_FREQUENCY_CONTRADICTED, fitted_hz=frequency * math.exp(shift), given_hz=frequency
         )
-    if fit.active[u.damping] and abs(values[u.damping]) > _CORRECTED_DAMPING:
+    if fit.active[u.damping] and abs(values[u.damping]) > _CORRECTED_DAMPING and u.damping not in bound:
         damping = given.damping_ratio
         yield doubt(LimitationCode.DAMPING_CORRECTED, fitted=damping * math.exp(values[u.damping]), given=damping)
-    if fit.active[u.delay] and abs(values[u.delay]) > _CORRECTED_DELAY:
+    if fit.active[u.delay] and abs(values[u.delay]) > _CORRECTED_DELAY and u.delay not in bound:
         motion_lags = values[u.delay] > 0.0
         code = LimitationCode.MOTION_STAMPS_LAG if motion_lags else LimitationCode.VIBRATION_STAMPS_LAG
         yield doubt(code, delay_ms=1e3 * abs(float(values[u.delay])))
-    bounds = u.bounds()
-    names = {u.frequency: "natural frequency", u.damping: "damping ratio", u.torque: "torque", u.delay: "clock offset"}
-    on_bound = [name for place, name in names.items() if fit.active[place] and abs(values[place]) >= bounds[place]]
-    if on_bound:
-        yield doubt(LimitationCode.VALUE_ON_BOUND, names=" and ".join(on_bound))
     test = tests[u.torque]
     if not fit.relative and test.significance > CONTRADICTION and abs(test.value) > _CORRECTED_TORQUE:
         yield blocker(LimitationCode.TORQUE_TOO_SMALL if test.value > 0.0 else LimitationCode.TORQUE_TOO_LARGE)
