@@ -21,7 +21,7 @@ def critical_speed(model: ParametricModel) -> float:
     Gu et al. 2021: the principal instability is m = 1, k = 1). Each that can open at all is searched for its most
     unstable speed, and then for its lower edge.
     """
-    pairs = np.zeros(max(len(model.circular_spline.beta), len(model.flexspline.beta), 1))
+    pairs = np.zeros(model.harmonics)
     for series in (model.circular_spline, model.flexspline):
         pairs[: len(series.beta)] += np.abs(series.beta)
     total, damping = float(pairs.sum()), model.dynamics.damping_ratio

@@ -180,6 +180,11 @@ class ParametricModel:
     circular_spline: StiffnessSeries = field(default_factory=StiffnessSeries)
     torque: Torque = field(default_factory=Torque)
 
+    @property
+    def harmonics(self) -> int:
+        """Number of harmonics of the spline that has more of them, at least 1."""
+        return max(len(self.circular_spline.beta), len(self.flexspline.beta), 1)
+
     def stiffness_fluctuation(self, output_angle: npt.ArrayLike) -> FloatArray:
         """Relative stiffness fluctuation K/Kav - 1 (eq. 2) at the output angle q [rad], any shape."""
         q = np.asarray(output_angle, dtype=np.float64)

@@ -49,17 +49,9 @@ class PitchErrors:
     def of_eccentric_gear(
         cls, teeth: int, eccentricity: float, *, scatter: float = 0.0, seed: int = 0
     ) -> "PitchErrors":
-        """Errors of a gear cut off its centre: one cycle a revolution, and tooth-to-tooth scatter.
+        """Errors of a gear cut off its centre: one cycle a revolution of amplitude `eccentricity` [m].
 
-        Parameters
-        ----------
-        teeth : int
-        eccentricity : float
-            Amplitude [m].
-        scatter : float
-            Standard deviation of each tooth's own place [m].
-        seed : int
-            Of the scatter; the same seed gives the same gear.
+        Each tooth's own place has the standard deviation `scatter` [m]; the same seed gives the same gear.
         """
         places = 2.0 * np.pi * np.arange(teeth) / teeth
         own = np.random.default_rng(seed).normal(0.0, scatter, teeth)

@@ -30,8 +30,7 @@ def growth_rate(model: ParametricModel, speed_rpm: float) -> float:
     cs, fs = (round(x) for x in model.reducer.output_orders)
     omega = abs(speed_rpm) * 2.0 * math.pi / 60.0 / model.reducer.reduction
     period = 2.0 * math.pi / (math.gcd(cs, fs) * omega)
-    harmonics = max(len(model.circular_spline.beta), len(model.flexspline.beta), 1)
-    fastest = max(model.dynamics.angular_frequency * 1.5, harmonics * fs * omega)
+    fastest = max(model.dynamics.angular_frequency * 1.5, model.harmonics * fs * omega)
     steps = math.ceil(period * fastest * _STEPS_PER_RADIAN / math.pi)
     times = np.linspace(0.0, period, steps + 1)
     oscillator = Oscillator(model.dynamics, model.stiffness_fluctuation(omega * gauss_times(times)), period / steps)

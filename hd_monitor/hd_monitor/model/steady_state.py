@@ -47,7 +47,7 @@ class SteadyState:
         return 2.0 * complex(self.acceleration[match[0]]) if match.size else 0j
 
 
-def combination_orders(model: ParametricModel, order: int = DEFAULT_COMBINATION_ORDER) -> IntArray:
+def combination_orders(model: ParametricModel, order: int) -> IntArray:
     """Cycles per output revolution of the lines p·ωo1 + q·ωo2 with abs(p) + abs(q) up to `order`.
 
     A load fluctuation at another order than the lines' own spacing adds its first side lines.

@@ -43,11 +43,6 @@ class Sweep(NamedTuple):
     stop: float
     rate: float
 
-    @property
-    def duration(self) -> float:
-        """Time that the sweep takes [s]."""
-        return (self.stop - self.start) / self.rate
-
 
 class PitchErrorCase(NamedTuple):
     """The circular spline's pitch errors, their tolerance [m] and the stiffening by interference [1/m]."""
@@ -61,42 +56,28 @@ class PitchErrorCase(NamedTuple):
 class Case:
     """A reducer with its defects, and the settings of its figures.
 
-    Attributes
-    ----------
-    name : str
-    model : ParametricModel
-    sensor_radius : float
-        [m]
-    settings : JointSettings
-        Of a monitor of this reducer; the defects are not among them.
-    speed : float
-        Wave-generator speed of the spectra [rpm].
-    speeds : Range
-        Wave-generator speeds of the property curve [rpm].
-    scales : Range
-        Factors on the indexes for the stability chart.
-    sweep : Sweep
-    static_test : StaticTestBed
-    static_step : float
-        Angle between two positions of the static test [rad of the wave generator].
-    pitch_error : PitchErrorCase or None
-        Source of the circular spline's fluctuation in `model`, if not given directly.
-    ignored : tuple of str
-        Names in a file shared with others that mean nothing here.
+    The settings are those of a monitor of this reducer; the defects are not among them.
     """
 
     name: str
     model: ParametricModel
     sensor_radius: float
+    """[m]"""
     settings: JointSettings
     speed: float
+    """Wave-generator speed of the spectra [rpm]."""
     speeds: Range
+    """Wave-generator speeds of the property curve [rpm]."""
     scales: Range
+    """Factors on the indexes for the stability chart."""
     sweep: Sweep
     static_test: StaticTestBed
     static_step: float
+    """Angle between two positions of the static test [rad of the wave generator]."""
     pitch_error: PitchErrorCase | None
+    """Source of the circular spline's fluctuation in `model`, if not given directly."""
     ignored: tuple[str, ...] = ()
+    """Names in a file shared with others that mean nothing here."""
 
     def in_g(self, acceleration: Any) -> Any:
         """Tangential acceleration at the sensor [g] for a torsional acceleration [rad/s²]."""

@@ -3,8 +3,8 @@
 import io
 from typing import Any
 
+import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import MultipleLocator
 
@@ -31,12 +31,9 @@ def figure_of(name: str, exhibit: Exhibit) -> Figure:
     rows = -(-count // columns)
     width = _HEIGHT * 1.15 if all(panel.equal for panel in exhibit.panels) else _WIDTH * (1.25 if count == 1 else 1.0)
     figure = Figure(figsize=(width * columns, _HEIGHT * rows), layout="constrained")
-    FigureCanvasAgg(figure)
-    grid = figure.add_gridspec(rows, columns)
-    for number, panel in enumerate(exhibit.panels):
-        row, column = divmod(number, columns)
-        alone = number == count - 1 and column == 0
-        _draw(figure.add_subplot(grid[row, :] if alone else grid[row, column]), panel, figure)
+    places = np.minimum(np.arange(rows * columns), count - 1).reshape(rows, columns)  # the last one fills its row
+    for number, axes in figure.subplot_mosaic(places.tolist()).items():
+        _draw(axes, exhibit.panels[number], figure)
     figure.suptitle(f"{name}  {exhibit.title}", fontsize=11, fontweight="bold")
     return figure
 
@@ -89,15 +86,15 @@ def _draw_curve(axes: Axes, curve: Curve, colour: str) -> None:
 
 
 def _draw_surface(axes: Axes, surface: Surface, figure: Figure) -> None:
-    # The level in the middle of the colours; values far below it must not all get one dark tone
+    # 0 in the middle of the colours; values far below it must not all get one dark tone
     largest = max(float(surface.values.max()), -2.5 * float(surface.values.min()))
     grid = surface.x, surface.y, surface.values
     image = axes.pcolormesh(*grid, cmap="RdBu_r", vmin=-largest, vmax=largest, shading="gouraud", rasterized=True)
     bar = figure.colorbar(image, ax=axes)
     bar.set_label(surface.label, fontsize=9)
     bar.ax.tick_params(labelsize=8)
-    if surface.values.min() < surface.level < surface.values.max():
-        axes.contour(*grid, levels=[surface.level], colors="black", linewidths=1.4)
+    if surface.values.min() < 0.0 < surface.values.max():
+        axes.contour(*grid, levels=[0.0], colors="black", linewidths=1.4)
 
 
 def _make_room(axes: Axes, *, log: bool) -> None:

@@ -32,13 +32,12 @@ class Mark:
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Surface:
-    """Values over a grid, shape (y, x), with the contour at `level` drawn."""
+    """Values over a grid, shape (y, x), drawn with the contour of 0."""
 
     x: FloatArray
     y: FloatArray
     values: FloatArray
     label: str
-    level: float = 0.0
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -71,28 +70,18 @@ class Outcome(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Claim:
-    """One statement of the paper, checked.
-
-    Attributes
-    ----------
-    statement : str
-        What is claimed.
-    paper, ours : str
-        The paper's printed value and our computed one, with units.
-    passed : bool
-        Whether ours agrees; for a contradiction, whether our numbers confirm that the printed ones exclude each other.
-    note : str
-        Why it differs, or which convention was chosen.
-    contradiction : bool
-        Whether the paper contradicts itself here.
-    """
+    """One statement of the paper, checked."""
 
     statement: str
     paper: str
+    """The printed value, with its unit."""
     ours: str
     passed: bool
+    """Whether ours agrees; for a contradiction, whether it confirms that the printed ones exclude each other."""
     note: str = ""
+    """Why it differs, or which convention was chosen."""
     contradiction: bool = False
+    """Whether the paper contradicts itself here."""
 
     @property
     def outcome(self) -> Outcome:
@@ -104,22 +93,13 @@ class Claim:
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Exhibit:
-    """A figure, table or equation of the paper, recomputed.
-
-    Attributes
-    ----------
-    title : str
-        The paper's own caption in short.
-    caption : str
-        What is drawn and with which parameters.
-    panels : tuple of Panel
-    claims : tuple of Claim
-    facts : tuple of (str, str)
-        Results to print that no claim is held against: (name, value with unit).
-    """
+    """A figure, table or equation of the paper, recomputed."""
 
     title: str
+    """The paper's own caption in short."""
     caption: str
+    """What is drawn and with which parameters."""
     panels: tuple[Panel, ...] = ()
     claims: tuple[Claim, ...] = ()
     facts: tuple[tuple[str, str], ...] = ()
+    """Results to print that no claim is held against: (name, value with unit)."""

@@ -3,16 +3,17 @@
 from dataclasses import replace
 
 import numpy as np
+from scipy.signal import find_peaks
 
 from ..arrays import FloatArray
-from ..model import ParametricModel, StiffnessSeries, steady_state
+from ..model import StiffnessSeries, steady_state
 from ..model.simulation import TimeResponse
 from ..orders.zoom import Zoom, zoom_spectrum
 from . import printed
 from .cases import Case, Cases
 from .diagnosis import SENSOR_NOISE, diagnose
 from .exhibit import Claim, Curve, Exhibit, Mark, Panel
-from .records import REVOLUTIONS, amplitude, line_heights, local_maxima, output_frequency, spectrum, steady_record
+from .records import REVOLUTIONS, amplitude, line_heights, output_frequency, spectrum, steady_record
 
 UNEVEN = 3.7
 """Output revolutions of a stretch in which no line completes a whole number of cycles together with the others."""
@@ -44,39 +45,33 @@ def spectrum_panel(
     values: FloatArray, rate: float, *, unit: str, top: float, bottom: float = 0.0, title: str = "Spectrum"
 ) -> Panel:
     """Draw the amplitude spectrum from `bottom` to `top` [Hz]."""
-    whole = spectrum(values, rate)
-    shown = (whole.frequencies >= bottom) & (whole.frequencies <= top)
+    frequencies, amplitudes = spectrum(values, rate)
+    shown = (frequencies >= bottom) & (frequencies <= top)
     return Panel(
         title=title,
         x_label="frequency (Hz)",
         y_label=f"amplitude ({unit})",
-        curves=(Curve(x=whole.frequencies[shown], y=whole.amplitude[shown]),),
+        curves=(Curve(x=frequencies[shown], y=amplitudes[shown]),),
         x_range=(bottom, top),
-        y_range=(0.0, 1.1 * float(whole.amplitude[shown].max())),
+        y_range=(0.0, 1.1 * float(amplitudes[shown].max())),
     )
 
 
 def peak_near(record: TimeResponse, values: FloatArray, frequency: float, threshold: float) -> float:
     """Frequency [Hz] of the spectrum's local maximum nearest to `frequency`; NaN if none is above `threshold`."""
-    whole = spectrum(values, record.rate)
-    tops = local_maxima(whole.amplitude)
-    found = whole.frequencies[tops[whole.amplitude[tops] > threshold]]
+    frequencies, amplitudes = spectrum(values, record.rate)
+    found = frequencies[find_peaks(amplitudes, threshold)[0]]
     return float(found[np.abs(found - frequency).argmin()]) if found.size else float("nan")
-
-
-def harmonics_of(model: ParametricModel) -> range:
-    """Numbers k of the pairs that the model's defects drive directly."""
-    return range(1, max(len(model.flexspline.beta), len(model.circular_spline.beta), 1) + 1)
 
 
 def bispectra_panels(case: Case, record: TimeResponse) -> tuple[Panel, ...]:
     """Draw figure 8: the spectrum of the simulated displacement, and its pairs."""
     values = record.displacement * MICRO
-    ks = harmonics_of(case.model)
-    top = 1.25 * case.model.reducer.line_frequencies(case.speed, ks[-1]).flexspline
+    harmonics = case.model.harmonics
+    top = 1.25 * case.model.reducer.line_frequencies(case.speed, harmonics).flexspline
     return (
         spectrum_panel(values, record.rate, unit="µrad", top=top, title="Spectrum of θ"),
-        *(zoom_panel(case, record, values, k=k, unit="µrad") for k in ks),
+        *(zoom_panel(case, record, values, k=k, unit="µrad") for k in range(1, harmonics + 1)),
     )
 
 
@@ -87,14 +82,15 @@ def figure_8(cases: Cases) -> Exhibit:
     record = steady_record(model, case.speed)
     values = record.displacement
     bin_width = output_frequency(record) / REVOLUTIONS
-    pairs = [reducer.line_frequencies(case.speed, k) for k in harmonics_of(model)]
+    harmonics = range(1, model.harmonics + 1)
+    pairs = [reducer.line_frequencies(case.speed, k) for k in harmonics]
     threshold = 1e-3 * max(line_heights(model, values))
     found = [[peak_near(record, values, line, threshold) for line in pair] for pair in pairs]
     at_home = bool((np.abs(np.subtract(found, pairs)) < bin_width).all())
     state = steady_state(model, case.speed)
     balance = [
         (abs(state.acceleration_phasor(k * order)), amplitude(record.acceleration, k * order))
-        for k in harmonics_of(model)
+        for k in harmonics
         for order in reducer.output_orders
     ]
     error = max(abs(a - b) for a, b in balance) / max(b for _, b in balance)
@@ -154,7 +150,7 @@ def equation_5(cases: Cases) -> Exhibit:
     cs, fs = case.model.reducer.output_orders
     z2_to_z1 = printed.CIRCULAR_SPLINE_TEETH.value / printed.FLEXSPLINE_TEETH.value
     speeds = np.unique([0.5 * case.speed, case.speed, cases["rig"].speed, 2.0 * cases["rig"].speed])
-    harmonics = harmonics_of(case.model)
+    harmonics = range(1, case.model.harmonics + 1)
     records = [steady_record(case.model, speed) for speed in speeds]
     measured = np.array([[line_distance(record, cs * k, fs * k) for record in records] for k in harmonics])
     expected = np.multiply.outer(harmonics, speeds) / 30.0 * (z2_to_z1 - 1.0)
@@ -189,31 +185,28 @@ def equation_5(cases: Cases) -> Exhibit:
 def table_1(cases: Cases) -> Exhibit:
     """Let the monitor identify Table 1's indexes from acceleration and angle."""
     case = cases["table_1"]
-    assessment = diagnose(case)
-    found = assessment.identification
-    claims, curves, identified = [], [], []
+    found = diagnose(case).identification
+    claims, curves, identified = [], [], [np.empty((2, 0))]
     for row, (name, values) in enumerate(printed.TABLE_1.items(), start=1):
-        phasors = np.zeros(0) if found is None else getattr(found, name)
-        measured = np.abs(phasors)[: len(values)]
-        ok = measured.size == len(values) and float(np.abs(measured - values).max()) < _LARGEST_ERROR
+        measured = np.abs(() if found is None else getattr(found, name))[: len(values)]
+        complete = measured.size == len(values)
         part = name.replace("_", " ")
-        symbols = ", ".join(f"β{row}{k}" for k in range(1, len(values) + 1))
         claims.append(
             Claim(
-                statement=f"{symbols} ({part}), identified from the vibration",
+                statement=", ".join(f"β{row}{k}" for k in range(1, len(values) + 1))
+                + f" ({part}), identified from the vibration",
                 paper=", ".join(f"{v:g}" for v in values),
                 ours=", ".join(f"{v:.4f}" for v in measured) or "nothing identified",
-                passed=ok,
+                passed=complete and float(np.abs(measured - values).max()) < _LARGEST_ERROR,
                 note=f"The monitor knows teeth, fn, ζ, J and M0 and nothing of the indexes; sensor noise "
                 f"{SENSOR_NOISE:g} rad/s².",
             )
         )
         places = np.arange(1.0, len(values) + 1.0) + 0.06 * (2 * row - 3)
         curves.append(Curve(x=places, y=np.asarray(values), label=f"{part}, printed", style="stems"))
-        if measured.size == len(values):
-            identified.append((places, measured))
-    x, y = np.concatenate(identified, axis=1) if identified else np.empty((2, 0))
-    curves.append(Curve(x=x, y=y, label="identified", style="points"))
+        if complete:
+            identified.append(np.stack([places, measured]))
+    x, y = np.concatenate(identified, axis=1)
     return Exhibit(
         title="Index values of the stiffness fluctuation",
         caption=f"Simulated at {case.speed:g} rpm, identified by the monitor from acceleration and joint angle.",
@@ -222,7 +215,7 @@ def table_1(cases: Cases) -> Exhibit:
                 title="Table 1",
                 x_label="harmonic",
                 y_label="index β",
-                curves=tuple(curves),
+                curves=(*curves, Curve(x=x, y=y, label="identified", style="points")),
                 x_step=1.0,
                 x_range=(0.5, 3.5),
                 y_range=(0.0, 0.075),

@@ -1,12 +1,11 @@
 """Steady records over whole output revolutions, whose Fourier bins are the lines themselves."""
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 from scipy.signal import periodogram
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import FloatArray
 from ..model import ParametricModel
 from ..model.simulation import TimeResponse, constant_speed, simulate
 from ..reducer import LinePair
@@ -19,13 +18,6 @@ SETTLING_TIME_CONSTANTS = 20.0
 
 _STEPS_PER_RADIAN = 6.0  # of the natural frequency: 2 kHz at 55 Hz, where the integration is good to 1e-5
 _SAMPLES_PER_CYCLE = 12.0  # of the fastest stiffness harmonic
-
-
-class Spectrum(NamedTuple):
-    """Peak amplitudes over frequency [Hz], both of shape (bins,)."""
-
-    frequencies: FloatArray
-    amplitude: FloatArray
 
 
 def output_frequency(record: TimeResponse) -> float:
@@ -46,8 +38,7 @@ def line_heights(model: ParametricModel, values: FloatArray, k: int = 1) -> Line
 
 def sampling_rate(model: ParametricModel, speed_rpm: float) -> float:
     """Rate [Hz] at which both the natural vibration and the stiffness harmonics at a speed [rpm] are well resolved."""
-    harmonics = max(len(model.circular_spline.beta), len(model.flexspline.beta), 1)
-    fastest = model.reducer.line_frequencies(speed_rpm, harmonics).flexspline
+    fastest = model.reducer.line_frequencies(speed_rpm, model.harmonics).flexspline
     return max(_STEPS_PER_RADIAN * model.dynamics.angular_frequency, _SAMPLES_PER_CYCLE * fastest)
 
 
@@ -63,12 +54,7 @@ def steady_record(model: ParametricModel, speed_rpm: float) -> TimeResponse:
     return simulate(model, motion, duration=settled + duration, rate=rate).after(settled)
 
 
-def spectrum(values: FloatArray, rate: float) -> Spectrum:
-    """Amplitude spectrum with a Hann window, the mean removed: a sine of amplitude A on a bin shows A."""
+def spectrum(values: FloatArray, rate: float) -> tuple[FloatArray, FloatArray]:
+    """Frequencies [Hz] and peak amplitudes, both of shape (bins,), by a Hann window with the mean removed."""
     frequencies, power = periodogram(values, rate, window="hann", detrend="constant", scaling="spectrum")
-    return Spectrum(np.asarray(frequencies), np.sqrt(2.0 * power))
-
-
-def local_maxima(values: FloatArray) -> IntArray:
-    """Indexes of values above the one before and not below the next; ends do not count."""
-    return np.flatnonzero((values[1:-1] > values[:-2]) & (values[1:-1] >= values[2:])) + 1
+    return frequencies, np.sqrt(2.0 * power)

@@ -79,18 +79,9 @@ def compute[Given](
     only: Iterable[str] = (),
     progress: Callable[[str], None] = lambda line: None,
 ) -> dict[str, Exhibit]:
-    """Compute one exhibit after another; return them by their names.
+    """Compute the exhibits chosen by `only` (see :func:`select`) one after another; return them by their names.
 
-    Parameters
-    ----------
-    entries : sequence of Entry
-        `EXHIBITS` for the paper's, `own_reducer.FIGURES` for a user's reducer.
-    given : Cases or Case
-        What they are computed from.
-    only : iterable of str
-        Names to choose from them, see :func:`select`.
-    progress : callable
-        Gets one line per exhibit when it is done.
+    `progress` gets one line per exhibit when it is done.
     """
     chosen = select(only, entries)
     done = {}

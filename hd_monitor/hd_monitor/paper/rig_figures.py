@@ -1,6 +1,6 @@
 """Figures 13, 15 and 17: the test rig's vibration at one speed."""
 
-from collections.abc import Iterable
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -37,12 +37,11 @@ class Beat(NamedTuple):
 def beat(values: FloatArray, rate: float) -> Beat:
     """Measure the beat of a vibration record, shape (samples,), that holds a whole number of beats."""
     envelope = np.abs(hilbert(values))
-    whole = spectrum(envelope, rate)
-    strongest = int(np.argmax(whole.amplitude[1:])) + 1
+    frequencies, amplitudes = spectrum(envelope, rate)
     inner = envelope[envelope.size // 20 : -(envelope.size // 20) or None]
     return Beat(
         envelope=envelope,
-        frequency=float(whole.frequencies[strongest]),
+        frequency=float(frequencies[1:][amplitudes[1:].argmax()]),
         depth=float((inner.max() - inner.min()) / (inner.max() + inner.min())),
     )
 
@@ -85,16 +84,20 @@ def figure_13a(cases: Cases) -> Exhibit:
     )
 
 
-def resonance_claim(case: Case, record: TimeResponse, speed: float, label: printed.Printed, multiple: int) -> Claim:
-    """Find the dominant pair's k, where the paper's label of the dominant component counts shaft cycles."""
-    whole = spectrum(record.acceleration, record.rate)
-    dominant = float(whole.frequencies[whole.amplitude.argmax()])
-    k = strongest_pair(case, speed)
-    pair = case.model.reducer.line_frequencies(speed, k)
+def _spectrum(case: Case, title: str, label: printed.Printed, multiple: int, pairs: int, *claims: Claim) -> Exhibit:
+    """Show the spectrum of the sensor's signal up to some pair, and find the dominant pair's k.
+
+    The paper's label of the dominant component counts `multiple` cycles of the shaft.
+    """
+    record = steady_record(case.model, case.speed)
+    frequencies, amplitudes = spectrum(record.acceleration, record.rate)
+    dominant = float(frequencies[amplitudes.argmax()])
+    k = strongest_pair(case, case.speed)
+    pair = case.model.reducer.line_frequencies(case.speed, k)
     fn = case.model.dynamics.natural_frequency
-    of_shaft = multiple * speed / 60.0
-    return Claim(
-        statement=f"Dominant component at {speed:g} rpm, close to the resonance",
+    of_shaft = multiple * case.speed / 60.0
+    resonance = Claim(
+        statement=f"Dominant component at {case.speed:g} rpm, close to the resonance",
         paper=str(label),
         ours=f"k = {k}: {pair.circular_spline:.2f} and {pair.flexspline:.2f} Hz, the larger at {dominant:.2f} Hz",
         passed=min(abs(dominant - line) for line in pair) < output_frequency(record)
@@ -104,24 +107,18 @@ def resonance_claim(case: Case, record: TimeResponse, speed: float, label: print
         note=f"With ωo2 = 2n/60 the printed {multiple}× would be {2.0 * of_shaft:.0f} Hz; {multiple} cycles a shaft "
         f"revolution are {of_shaft:.2f} Hz, this pair. Numbered here by k.",
     )
-
-
-def _spectrum(title: str, case: Case, record: TimeResponse, top: float, *claims: Claim) -> Exhibit:
-    """Show the spectrum of the sensor's signal up to `top` [Hz]."""
-    values = case.in_g(record.acceleration)
+    top = 1.2 * case.model.reducer.line_frequencies(case.speed, pairs).flexspline
     return Exhibit(
-        title=title,
+        title=f"{title} at {case.speed:g} rpm",
         caption=f"Tangential acceleration at {case.sensor_radius:g} m, {REVOLUTIONS} output revolutions, Hann window.",
-        panels=(spectrum_panel(values, record.rate, unit="g", top=top),),
-        claims=claims,
+        panels=(spectrum_panel(case.in_g(record.acceleration), record.rate, unit="g", top=top),),
+        claims=(*claims, resonance),
     )
 
 
 def figure_13b(cases: Cases) -> Exhibit:
     """Spectrum on the rig at 850 rpm."""
     case = cases["rig"]
-    record = steady_record(case.model, case.speed)
-    top = 1.2 * case.model.reducer.line_frequencies(case.speed, _PAIRS).flexspline
     pairs = line_pairs(case.model, case.speed, _PAIRS)
     floor = 1e-3 * max(max(pair) for pair in pairs)
     visible = [k for k, pair in enumerate(pairs, start=1) if min(pair) > floor]
@@ -131,9 +128,7 @@ def figure_13b(cases: Cases) -> Exhibit:
         ours="pairs k = " + ", ".join(str(k) for k in visible) + " above 1e-3 of the largest line",
         passed=len(visible) >= 2,
     )
-    dominant = resonance_claim(case, record, case.speed, printed.RIG_DOMINANT, 4)
-    title = f"Spectrum of torsional vibration at {case.speed:g} rpm"
-    return _spectrum(title, case, record, top, several, dominant)
+    return _spectrum(case, "Spectrum of torsional vibration", printed.RIG_DOMINANT, 4, _PAIRS, several)
 
 
 def figure_13c(cases: Cases) -> Exhibit:
@@ -174,12 +169,8 @@ def figure_13c(cases: Cases) -> Exhibit:
 
 def figure_15(cases: Cases) -> Exhibit:
     """Spectrum on the rig at 1700 rpm: resonance of the first pair."""
-    case, speed = cases["rig"], printed.RIG_FAST_SPEED.value
-    record = steady_record(case.model, speed)
-    top = 1.2 * case.model.reducer.line_frequencies(speed, 3).flexspline
-    claim = resonance_claim(case, record, speed, printed.RIG_FAST_DOMINANT, 2)
-    title = f"Spectrum of combination harmonic resonance at {speed:g} rpm"
-    return _spectrum(title, case, record, top, claim)
+    case = replace(cases["rig"], speed=printed.RIG_FAST_SPEED.value)
+    return _spectrum(case, "Spectrum of combination harmonic resonance", printed.RIG_FAST_DOMINANT, 2, 3)
 
 
 class Quasiperiodicity(NamedTuple):
@@ -194,7 +185,7 @@ class Quasiperiodicity(NamedTuple):
     """Part of the acceleration's power in lines p·ωo1 + q·ωo2."""
 
 
-def _strobe(case: Case, record: TimeResponse, rows: Iterable[FloatArray]) -> FloatArray:
+def _strobe(case: Case, record: TimeResponse, rows: FloatArray) -> FloatArray:
     """Catch the rows once per circular-spline period, over one output revolution."""
     cs = case.model.reducer.output_orders.circular_spline
     times = np.arange(0.0, cs) / (cs * output_frequency(record))
@@ -224,19 +215,21 @@ def phase_panels(case: Case, record: TimeResponse) -> tuple[Panel, ...]:
     The trace covers half an output revolution, the common period of both lines. The states caught make a closed curve
     if the motion is quasi-periodic, else one point.
     """
-    states = record.displacement, record.velocity
+    states = np.stack([record.displacement, record.velocity])
     half = record.displacement.size // REVOLUTIONS // 2
-    caught = _strobe(case, record, states)
-    return (
-        _phase_panel("Phase trace, half an output revolution", states[0][:half], states[1][:half], "fine"),
-        _phase_panel("Caught once per circular-spline period", caught[0], caught[1], "points"),
+    parts: tuple[tuple[str, FloatArray, Style], ...] = (
+        ("Phase trace, half an output revolution", states[:, :half], "fine"),
+        ("Caught once per circular-spline period", _strobe(case, record, states), "points"),
     )
-
-
-def _phase_panel(title: str, displacement: FloatArray, velocity: FloatArray, style: Style) -> Panel:
-    curve = Curve(x=displacement * 1e3, y=velocity, style=style)
-    return Panel(
-        title=title, x_label="displacement θ (mrad)", y_label="velocity θ' (rad/s)", curves=(curve,), equal=True
+    return tuple(
+        Panel(
+            title=title,
+            x_label="displacement θ (mrad)",
+            y_label="velocity θ' (rad/s)",
+            curves=(Curve(x=displacement * 1e3, y=velocity, style=style),),
+            equal=True,
+        )
+        for title, (displacement, velocity), style in parts
     )
 
 

@@ -1,31 +1,25 @@
 """Figure 16 and the stability chart: vibration and its growth over speed."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import bisect
+from scipy.signal import find_peaks
 
 from ..arrays import FloatArray
 from ..model import ParametricModel, StiffnessSeries, growth_rate, scale_defects, stability_chart, steady_state
 from .cases import Case, Cases
 from .exhibit import Claim, Curve, Exhibit, Mark, Panel, Surface
-from .records import local_maxima, steady_record
+from .records import steady_record
 
 _THRESHOLD_ACCURACY = 1.5e-4  # of β
 
 
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class PropertyCurve:
-    """RMS over speed.
+class PropertyCurve(NamedTuple):
+    """RMS of the tangential acceleration [g] and Floquet growth rate [1/s] over wave-generator speed [rpm].
 
-    Attributes
-    ----------
-    speed : ndarray, shape (speeds,)
-        Of the wave generator [rpm].
-    rms : ndarray, shape (speeds,)
-        Of the tangential acceleration [g]; NaN where the vibration would grow without bound.
-    growth : ndarray, shape (speeds,)
-        Floquet growth rate [1/s].
+    All of shape (speeds,); the RMS is NaN where the vibration would grow without bound.
     """
 
     speed: FloatArray
@@ -35,7 +29,7 @@ class PropertyCurve:
     @property
     def peaks(self) -> FloatArray:
         """Speeds [rpm] of local maxima."""
-        return self.speed[local_maxima(np.nan_to_num(self.rms, nan=np.inf))]
+        return self.speed[find_peaks(np.nan_to_num(self.rms, nan=np.inf))[0]]
 
     @property
     def highest(self) -> tuple[float, float]:
@@ -68,7 +62,7 @@ def property_curve(case: Case, speeds: FloatArray | None = None) -> PropertyCurv
     speeds = case.speeds.values if speeds is None else speeds
     growth = np.array([growth_rate(case.model, float(n)) for n in speeds])
     rms = np.array([case.in_g(steady_state(case.model, float(n)).acceleration_rms) for n in speeds])
-    return PropertyCurve(speed=speeds, rms=np.where(growth < 0.0, rms, np.nan), growth=growth)
+    return PropertyCurve(speeds, np.where(growth < 0.0, rms, np.nan), growth)
 
 
 def curve_panel(case: Case, curve: PropertyCurve, title: str, top: float | None = None) -> Panel:
@@ -192,7 +186,12 @@ def stability(cases: Cases) -> Exhibit:
     ]
     table = cases["table_1"]
     rate = growth_rate(table.model, table.speed)
-    limit = _stable_up_to(table.model, table.speed)
+    unstable = (
+        f"a factor of {factor:g}"
+        for factor in np.arange(1.0, 8.01, 0.25)
+        if growth_rate(scale_defects(table.model, float(factor)), table.speed) > 0.0
+    )
+    limit = next(unstable, "a factor of more than 8")
     return Exhibit(
         title="Stability chart (Strutt)",
         caption=f"Floquet growth rate with a single β11, fn = {case.model.dynamics.natural_frequency:g} Hz, ζ = "
@@ -217,10 +216,3 @@ def stability(cases: Cases) -> Exhibit:
         ),
         facts=(("Table 1's indexes may grow, at 750 rpm, before it becomes unstable, by", limit),),
     )
-
-
-def _stable_up_to(model: ParametricModel, speed: float) -> str:
-    for factor in np.arange(1.0, 8.01, 0.25):
-        if growth_rate(scale_defects(model, float(factor)), speed) > 0.0:
-            return f"a factor of {factor:g}"
-    return "a factor of more than 8"

@@ -15,6 +15,9 @@ from .records import sampling_rate
 INSTABILITY_BAND = (103.0 / 55.0, 120.0 / 55.0)
 """Search range of the principal instability's peak: ωo2/2π as multiples of fn, around 2."""
 
+_PEAKS = {"1/2 harmonic resonance": (0.46, 0.54), "resonance": (0.9, 1.1), "instability": (1.85, 2.15)}
+"""The convex peaks of figure 10, and where each is searched for: ωo2/2π as multiples of fn."""
+
 RATES = tuple(np.round(np.arange(0.40, 1.001, 0.05), 2).tolist())
 """Sweep rates [Hz/s] of the exhibit SR."""
 
@@ -60,7 +63,7 @@ def sweep_response(case: Case, rate: float | None = None) -> SweepResponse:
     top_speed = 60.0 * sweep.stop / model.reducer.circular_spline_order
     sampling = sampling_rate(model, top_speed)
     motion = linear_sweep(model.reducer, sweep.start, sweep.rate)
-    response = simulate(model, motion, duration=sweep.duration, rate=sampling)
+    response = simulate(model, motion, duration=(sweep.stop - sweep.start) / sweep.rate, rate=sampling)
     deviation = np.abs(response.displacement - model.torque.mean / model.dynamics.stiffness)
     frequency = sweep.start + sweep.rate * response.times
     # The largest value in each cycle of the line or of the natural vibration, whichever is slower
@@ -90,11 +93,7 @@ def sweep_panel(response: SweepResponse, title: str) -> Panel:
 def _three_peaks(response: SweepResponse) -> Claim:
     """Find the three convex peaks: each stands above its surroundings on both sides."""
     found, clear = [], True
-    for name, low, high in (
-        ("1/2 harmonic resonance", 0.46, 0.54),
-        ("resonance", 0.9, 1.1),
-        ("instability", 1.85, 2.15),
-    ):
+    for name, (low, high) in _PEAKS.items():
         height, place = response.peak(low, high)
         sides = (response.between(2.0 * low - high, low), response.between(high, 2.0 * high - low))
         clear &= height > 1.2 * max(float(np.median(response.envelope[side])) for side in sides)
