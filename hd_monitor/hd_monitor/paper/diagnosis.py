@@ -6,10 +6,12 @@ import numpy as np
 
 from ..assessment import Assessment
 from ..contract import NANOSECONDS, Block
+from ..diagnosis.verdict import Component
 from ..errors import HdMonitorError
 from ..monitor import Monitor
 from ..sources import Quantity
 from .cases import Case
+from .exhibit import Claim
 from .records import REVOLUTIONS, output_frequency, steady_record
 
 SENSOR_NOISE = 0.2
@@ -52,11 +54,13 @@ def diagnose(case: Case) -> Assessment:
     return assessment
 
 
-def verdict_words(assessment: Assessment) -> str:
-    """The part named, its level, and both indexes with their standard deviations."""
+def verdict_claim(case: Case, statement: str, paper: str, component: Component, note: str = "") -> Claim:
+    """Hold the monitor's verdict on a case against the part that the paper names."""
+    assessment = diagnose(case)
     verdict, found = assessment.verdict, assessment.identification
     words = f"{verdict.component.value} ({verdict.level.name})"
-    if found is None:
-        return words
-    (circular, flex), (circular_std, flex_std) = found.index, found.index_std
-    return f"{words}; circular spline {circular:.2%} ± {circular_std:.2%}, flexspline {flex:.2%} ± {flex_std:.2%}"
+    if found is not None:
+        (circular, flex), (circular_std, flex_std) = found.index, found.index_std
+        words += f"; circular spline {circular:.2%} ± {circular_std:.2%}, flexspline {flex:.2%} ± {flex_std:.2%}"
+    passed = verdict.component is component and (verdict.level > 0) == (component is not Component.NONE)
+    return Claim(statement=statement, paper=paper, ours=words, passed=passed, note=note)

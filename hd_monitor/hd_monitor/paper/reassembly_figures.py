@@ -4,9 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..diagnosis.verdict import Component
 from . import printed
 from .cases import Case, Cases, PitchErrorCase
-from .diagnosis import diagnose, verdict_words
+from .diagnosis import verdict_claim
 from .exhibit import Claim, Curve, Exhibit, Mark, Panel
 from .line_figures import zoom_panel
 from .records import line_heights, steady_record
@@ -56,7 +57,6 @@ def figure_18a(cases: Cases) -> Exhibit:
     record = steady_record(case.model, case.speed)
     values = case.in_g(record.acceleration)
     left, right = line_heights(case.model, values)
-    before = diagnose(case)
     return _figure_18(
         "Property curve, original case",
         case,
@@ -76,11 +76,8 @@ def figure_18a(cases: Cases) -> Exhibit:
             ours=f"left {left:.3g} g, right {right:.3g} g",
             passed=left > right,
         ),
-        Claim(
-            statement="Diagnosis before the change",
-            paper="fixed rigid gear (circular spline)",
-            ours=verdict_words(before),
-            passed=before.verdict.component.value == "circular_spline" and before.verdict.level > 0,
+        verdict_claim(
+            case, "Diagnosis before the change", "fixed rigid gear (circular spline)", Component.CIRCULAR_SPLINE
         ),
     )
 
@@ -90,7 +87,6 @@ def figure_18b(cases: Cases) -> Exhibit:
     case = cases["sample_after"]
     curve = property_curve(case)
     before, after = property_curve(cases["sample_before"]).highest[1], curve.highest[1]
-    verdict = diagnose(case)
     return _figure_18(
         "Property curve after change of the circular spline",
         case,
@@ -104,11 +100,11 @@ def figure_18b(cases: Cases) -> Exhibit:
             note="The paper prints no indexes: what is checked is that a circular spline with half the pitch "
             "error halves the peak, within ±0.1.",
         ),
-        Claim(
-            statement="Diagnosis after the change: the circular spline is no longer suspect",
-            paper="defect eliminated",
-            ours=verdict_words(verdict),
-            passed=verdict.verdict.component.value == "none",
+        verdict_claim(
+            case,
+            "Diagnosis after the change: the circular spline is no longer suspect",
+            "defect eliminated",
+            Component.NONE,
         ),
     )
 

@@ -7,11 +7,12 @@ import numpy as np
 from scipy.signal import hilbert
 
 from ..arrays import FloatArray
+from ..diagnosis.verdict import Component
 from ..model import line_pairs
 from ..model.simulation import TimeResponse
 from . import printed
 from .cases import Case, Cases
-from .diagnosis import diagnose, verdict_words
+from .diagnosis import verdict_claim
 from .exhibit import Claim, Curve, Exhibit, Panel, Style
 from .line_figures import spectrum_panel, zoom_panel
 from .records import REVOLUTIONS, line_heights, output_frequency, spectrum, steady_record
@@ -140,7 +141,6 @@ def figure_13c(cases: Cases) -> Exhibit:
     k = strongest_pair(case, case.speed)
     heights = line_heights(model, values, k)
     left, right = (abs(model.dynamics.receptance(f)) * f**2 for f in model.reducer.line_frequencies(case.speed, k))
-    diagnosis = diagnose(case)
     return Exhibit(
         title=f"Zoom spectrum at {case.speed:g} rpm",
         caption=f"Around pair k = {k} and, beside it, k = 1; tangential acceleration, Hann window.",
@@ -155,11 +155,11 @@ def figure_13c(cases: Cases) -> Exhibit:
                 note=f"Near the resonance the slope matters too: equal defects would show right/left = "
                 f"{right / left:.2f} here.",
             ),
-            Claim(
-                statement="The monitor's verdict on this vibration",
-                paper="flexspline",
-                ours=verdict_words(diagnosis),
-                passed=diagnosis.verdict.component.value == "flexspline",
+            verdict_claim(
+                case,
+                "The monitor's verdict on this vibration",
+                "flexspline",
+                Component.FLEXSPLINE,
                 note=f"True indexes: flexspline {model.flexspline.index:.1%}, circular spline "
                 f"{model.circular_spline.index:.1%}.",
             ),
