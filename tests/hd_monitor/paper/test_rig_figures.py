@@ -1,4 +1,4 @@
-"""Figures 13 and 15."""
+"""Figures 13, 15 and 17."""
 
 from dataclasses import replace
 
@@ -7,10 +7,13 @@ import pytest
 
 from hd_monitor.model import StiffnessSeries
 from hd_monitor.paper.exhibit import Outcome
+from hd_monitor.paper.records import steady_record
 from hd_monitor.paper.rig_figures import (
     beat,
     figure_13a,
     figure_13c,
+    figure_17,
+    quasiperiodicity,
     strongest_pair,
 )
 
@@ -67,3 +70,21 @@ def test_figure_13c_fails_with_the_defect_on_the_other_spline(swapped, outcomes)
 
 def test_figure_15_claim(exhibit, outcomes):
     assert outcomes(exhibit("F15")) == [Outcome.CONTRADICTION]
+
+
+def test_figure_17_is_quasi_periodic_and_closes_after_40_wave_generator_revolutions(cases):
+    case = cases["rig"]
+    measured = quasiperiodicity(case, steady_record(case.model, case.speed))
+    assert measured.stroboscopic_spread > 0.5
+    assert measured.closing_error < 1e-6
+    assert measured.lattice_power == pytest.approx(1.0, abs=1e-9)
+
+
+def test_figure_17_claim(exhibit, outcomes):
+    assert outcomes(exhibit("F17")) == [Outcome.PASS]
+
+
+def test_figure_17_fails_for_a_motion_of_one_period(cases, altered, outcomes):
+    case = cases["rig"]
+    periodic = replace(case, model=replace(case.model, flexspline=StiffnessSeries()))
+    assert outcomes(figure_17(altered(rig=periodic))) == [Outcome.FAIL]
