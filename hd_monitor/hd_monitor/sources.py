@@ -90,32 +90,24 @@ def _decode_blocks(messages: Sequence[bytes], settings: "JointSettings") -> Iter
         yield item
 
 
-def _decode_accelerations(messages: Sequence[bytes], settings: "JointSettings") -> Iterator[Decoded]:
-    samples = cdr.decode_vectors(messages)
-    return _samples(samples, samples.angular[:, 2])
+def _decode_vectors(
+    decode: Callable[[Sequence[bytes]], cdr.Samples], value: Callable[[cdr.Samples, "JointSettings"], FloatArray]
+) -> Decoder:
+    """Make a decoder of single samples from that of the message type and what counts of its vectors."""
 
+    def decoder(messages: Sequence[bytes], settings: "JointSettings") -> Iterator[Decoded]:
+        samples = decode(messages)
+        yield from samples.faults
+        if samples.stamps.size:
+            yield Stamped(samples.stamps, np.ascontiguousarray(value(samples, settings)))
 
-def _decode_imu(messages: Sequence[bytes], settings: "JointSettings") -> Iterator[Decoded]:
-    samples = cdr.decode_imu(messages)
-    given = settings.input
-    return _samples(samples, _along(given.axis, samples.linear) * (1.0 / given.sensor_radius))
-
-
-def _decode_wrench(messages: Sequence[bytes], settings: "JointSettings") -> Iterator[Decoded]:
-    samples = cdr.decode_vectors(messages)
-    return _samples(samples, _along(settings.load.axis, samples.angular))
+    return decoder
 
 
 def _along(axis: str, vectors: FloatArray) -> FloatArray:
     """Components of vectors, shape (N, 3), along an axis as the parameters name it, ``-z`` say; shape (N,)."""
     component = vectors[:, "xyz".index(axis[-1])]
     return -component if axis.startswith("-") else component
-
-
-def _samples(samples: cdr.Samples, values: FloatArray) -> Iterator[Decoded]:
-    yield from samples.faults
-    if samples.stamps.size:
-        yield Stamped(samples.stamps, np.ascontiguousarray(values))
 
 
 JOINT_STATES = Source(quantity=Quantity.MOTION, topic=contract.JOINT_STATES, type="sensor_msgs/JointState")
@@ -132,13 +124,16 @@ INPUT_SOURCES: Mapping[str, Source] = {
         quantity=Quantity.VIBRATION,
         topic=contract.TORSIONAL_ACCELERATION,
         type="geometry_msgs/AccelStamped",
-        decode=_decode_accelerations,
+        decode=_decode_vectors(cdr.decode_vectors, lambda samples, _: samples.angular[:, 2]),
     ),
     "imu": Source(
         quantity=Quantity.VIBRATION,
         topic=contract.IMU,
         type="sensor_msgs/Imu",
-        decode=_decode_imu,
+        decode=_decode_vectors(
+            cdr.decode_imu,
+            lambda samples, given: _along(given.input.axis, samples.linear) * (1.0 / given.input.sensor_radius),
+        ),
         needs=(
             (
                 "input.sensor_radius",
@@ -157,7 +152,10 @@ LOAD_SOURCES: Mapping[str, Source | None] = {
     "auto": None,
     "effort": None,
     "wrench": Source(
-        quantity=Quantity.TORQUE, topic=contract.WRENCH, type="geometry_msgs/WrenchStamped", decode=_decode_wrench
+        quantity=Quantity.TORQUE,
+        topic=contract.WRENCH,
+        type="geometry_msgs/WrenchStamped",
+        decode=_decode_vectors(cdr.decode_vectors, lambda samples, given: _along(given.load.axis, samples.angular)),
     ),
     "parameter": None,
     "unknown": None,

@@ -2,6 +2,7 @@
 
 import heapq
 import math
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
@@ -108,14 +109,14 @@ def write_bag(
         writer.set_compression(COMPRESSIONS[compression], CompressionFormat.ZSTD)
         with writer:
             connections: dict[str, Connection] = {}
-            counts: dict[str, int] = {}
+            counts: Counter[str] = Counter()
             for number, (due, topic, kind, data) in enumerate(heapq.merge(*streams, key=lambda message: message[0])):
                 if topic not in connections:
                     connections[topic] = writer.add_connection(
                         topic, kind, typestore=_STORE, offered_qos_profiles=[_QOS]
                     )
                 writer.write(connections[topic], start + due, data)
-                counts[topic] = counts.get(topic, 0) + 1
+                counts[topic] += 1
                 if progress is not None and number % 5000 == 0:
                     progress(due / NANOSECONDS / end)
     except (WriterError, OSError) as error:

@@ -66,9 +66,8 @@ def _run(arguments: argparse.Namespace) -> int:
     from .bag import write_bag
 
     overrides = dict(parse_override(text) for text in arguments.set)
-    for name in ("defect", "programme", "publish", "duration", "seed"):
-        if getattr(arguments, name) is not None:
-            overrides[name] = getattr(arguments, name)
+    shortcuts = ("defect", "programme", "publish", "duration", "seed")
+    overrides |= {name: value for name in shortcuts if (value := getattr(arguments, name)) is not None}
     files: list[Mapping[str, Any]] = [load_parameters(path, arguments.node) for path in arguments.params] or [{}]
     rigs = [RigSettings.from_mapping(pick({**given, **overrides}, NODE_PARAMETERS)) for given in files]
     for remark in dict.fromkeys(remark for rig in rigs for remark in rig.remarks):

@@ -63,12 +63,10 @@ class HdSimNode(ManagedNode):
     def _declare_all(self) -> None:
         given = {p.name: p.value for p in self.get_parameters(self.list_parameters([], 0).names)}
         settings = RigSettings.from_mapping(pick(given, NODE_PARAMETERS))
-        for parameter in PARAMETERS:
-            fixed = not parameter.name.startswith(CHANGEABLE)
-            declare(self, parameter, settings.values[parameter.name], read_only=fixed)
-        for parameter in NODE_PARAMETERS:
-            value = parameter.check(given.get(parameter.name, parameter.default))
-            declare(self, parameter, value, read_only=parameter.name != "time_scale")
+        values = {**settings.values, **{p.name: p.check(given.get(p.name, p.default)) for p in NODE_PARAMETERS}}
+        for parameter in (*PARAMETERS, *NODE_PARAMETERS):
+            fixed = not parameter.name.startswith((*CHANGEABLE, "time_scale"))
+            declare(self, parameter, values[parameter.name], read_only=fixed)
 
     def _settings(self, changes: Sequence[RosParameter] = ()) -> RigSettings:
         names = [parameter.name for parameter in PARAMETERS]

@@ -112,7 +112,11 @@ class SpeedProgramme:
 
     def angle(self, times: npt.ArrayLike) -> FloatArray:
         """Wave-generator angle φ [rad] at `times` [s], any shape; 0 at the start, exact to rounding."""
-        return self._with_ripple(self._plain(times)[0])
+        angle, _, _ = self._plain(times)
+        amplitude, order, phase = self.ripple
+        if not order:
+            return angle * (1.0 + amplitude * math.cos(phase))
+        return angle + amplitude / order * (np.sin(order * angle + phase) - math.sin(phase))
 
     def speed(self, times: npt.ArrayLike) -> FloatArray:
         """Wave-generator speed [rad/s] at `times` [s], any shape."""
@@ -138,12 +142,6 @@ class SpeedProgramme:
         start, slope = RPM * self.speeds[piece], self._slopes[piece]
         angle = cycle * self._angles[-1] + self._angles[piece] + (start + 0.5 * slope * since) * since
         return angle, start + slope * since, slope
-
-    def _with_ripple(self, angle: FloatArray) -> FloatArray:
-        amplitude, order, phase = self.ripple
-        if not amplitude or not order:
-            return angle * (1.0 + amplitude * math.cos(phase)) if amplitude else angle
-        return angle + amplitude / order * (np.sin(order * angle + phase) - math.sin(phase))
 
     def visited_speeds(self, spacing: float = 25.0) -> FloatArray:
         """Speeds [rpm] without sign that the programme holds, and those it passes at every `spacing` rpm; sorted."""

@@ -19,10 +19,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         parser.add_argument(
             name, type=Path, metavar=name.upper(), help=f"{what} bag, or a result written by replay --json"
         )
-    add_input_arguments(parser)
-    parser.add_argument(
-        "--json", metavar="OUT", help="write the comparison as JSON to this file; - for standard output"
-    )
+    add_input_arguments(parser, "comparison")
     parser.add_argument("--report", type=Path, metavar="DIR", help="write an HTML page with plots into this folder")
 
 

@@ -23,7 +23,6 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "analysis.memory says there",
     )
     add_input_arguments(parser)
-    parser.add_argument("--json", metavar="OUT", help="write the result as JSON to this file; - for standard output")
     parser.add_argument(
         "--yaml",
         type=Path,

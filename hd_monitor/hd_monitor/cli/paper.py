@@ -5,7 +5,6 @@ import shlex
 import shutil
 import sys
 import time
-from collections.abc import Callable
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -61,6 +60,11 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.report is not None:
         _check_report(arguments.report)
     start = time.perf_counter()
+
+    def tell(line: str) -> None:
+        if not arguments.quiet:
+            print(line, file=sys.stderr, flush=True)
+
     own = arguments.params is not None and not has_cases(arguments.params)
     if own:
         case = load_own_case(arguments.params)
@@ -70,12 +74,12 @@ def run(arguments: argparse.Namespace) -> int:
                 "figures; right if others share the file, else check the spelling",
                 file=sys.stderr,
             )
-        exhibits = compute(FIGURES, case, arguments.only, _progress(arguments))
+        exhibits = compute(FIGURES, case, arguments.only, tell)
         print(fact_table(exhibits))
         heading = f"Torsional vibration of the reducer in {arguments.params.name}"
     else:
         cases = load_paper_cases(arguments.params)
-        exhibits = compute(EXHIBITS, cases, arguments.only, _progress(arguments))
+        exhibits = compute(EXHIBITS, cases, arguments.only, tell)
         width = min(shutil.get_terminal_size((100, 24)).columns, _WIDEST)
         print(claim_table(exhibits, max(width, 60)))
         heading = "Torsional vibration of a harmonic driver (Gu et al. 2021), reproduced"
@@ -83,18 +87,8 @@ def run(arguments: argparse.Namespace) -> int:
         from ..paper.page import write_report
 
         print(f"report: {write_report(exhibits, arguments.report, heading=heading, command=_command(arguments))}")
-    _progress(arguments)(
-        f"{len(exhibits)} of {len(FIGURES if own else EXHIBITS)} in {time.perf_counter() - start:.1f} s"
-    )
+    tell(f"{len(exhibits)} of {len(FIGURES if own else EXHIBITS)} in {time.perf_counter() - start:.1f} s")
     return int(any(claim.outcome is Outcome.FAIL for exhibit in exhibits.values() for claim in exhibit.claims))
-
-
-def _progress(arguments: argparse.Namespace) -> Callable[[str], None]:
-    def tell(line: str) -> None:
-        if not arguments.quiet:
-            print(line, file=sys.stderr, flush=True)
-
-    return tell
 
 
 def _command(arguments: argparse.Namespace) -> str:

@@ -20,15 +20,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Add the command's arguments."""
     parser.add_argument("bag", type=Path, metavar="BAG", help="rosbag2 folder or file, MCAP or SQLite")
     add_input_arguments(parser)
-    parser.add_argument("--json", metavar="OUT", help="write the result as JSON to this file; - for standard output")
     parser.add_argument("--report", type=Path, metavar="DIR", help="write an HTML page with plots into this folder")
     parser.add_argument(
         "--fail-on", choices=sorted(_FAIL_ON), help="exit with status 1 if a joint's last verdict is this bad or worse"
     )
 
 
-def add_input_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments that say how a bag is to be read."""
+def add_input_arguments(parser: argparse.ArgumentParser, result: str = "result") -> None:
+    """Add the arguments that say how a bag is to be read, and where the `result` goes as JSON."""
     parser.add_argument("--params", type=Path, metavar="FILE", help="ROS parameter file, the same as the node's")
     parser.add_argument("--node", metavar="NAME", help="full name of the node in FILE whose parameters are meant")
     parser.add_argument(
@@ -41,6 +40,7 @@ def add_input_arguments(parser: argparse.ArgumentParser) -> None:
         "--remap", action="append", default=[], metavar="FROM:=TO", help="topic of the contract := recorded topic"
     )
     parser.add_argument("--namespace", metavar="NS", help="namespace of the node, where several were recorded")
+    parser.add_argument("--json", metavar="OUT", help=f"write the {result} as JSON to this file; - for standard output")
 
 
 def request_from(arguments: argparse.Namespace) -> Request:

@@ -112,9 +112,9 @@ class Screen:
         rpm = view.number("speed (rpm)")
         return "   - rpm" if rpm is None else f"{rpm:4.0f} rpm"
 
-    def _bar(self, part: float, width: int = _BAR) -> str:
-        full = round(min(max(part, 0.0), 1.0) * width)
-        return self._full * full + self._empty * (width - full)
+    def _bar(self, part: float) -> str:
+        full = round(min(max(part, 0.0), 1.0) * _BAR)
+        return self._full * full + self._empty * (_BAR - full)
 
     def _picture(self, view: View, progress: float) -> list[str]:
         width = max(40, shutil.get_terminal_size().columns) - 1
