@@ -48,8 +48,8 @@ class Inputs:
         self._sink = sink
         self._settings = settings
         self._sources = settings.sources
-        self._wanted = settings.input.joint_name
-        self._joint = joint
+        self._joint = settings.input.joint_name or joint
+        self._takes_any = not settings.input.joint_name and joint == UNNAMED_JOINT
         self._joint_seen = False
 
     def add(self, quantity: Quantity, messages: Sequence[bytes]) -> None:
@@ -91,16 +91,12 @@ class Inputs:
             self._sink.add(Quantity.MOTION, stamps[mine], *values[:, mine])
 
     def _column(self, names: tuple[str, ...]) -> int | None:
-        wanted = self._wanted or self._joint
-        if wanted in names:
-            return names.index(wanted)
-        if not self._wanted and self._joint == UNNAMED_JOINT and len(names) == 1:
-            return 0
-        return None
+        if self._joint in names:
+            return names.index(self._joint)
+        return 0 if self._takes_any and len(names) == 1 else None
 
     def _absent(self, names: tuple[str, ...]) -> str:
         there = ", ".join(names) if names else "no joint at all"
-        if not self._wanted and self._joint == UNNAMED_JOINT:
+        if self._takes_any:
             return f"joint_states carries {there}; set input.joint_name (or joints) to the one to watch"
-        wanted = self._wanted or self._joint
-        return f"joint {wanted!r} is not in joint_states, which carries {there}; check the name"
+        return f"joint {self._joint!r} is not in joint_states, which carries {there}; check the name"

@@ -63,10 +63,6 @@ def _stamps(rows: npt.NDArray[np.void]) -> IntArray:
     return rows["seconds"].astype(np.int64) * NANOSECONDS + rows["nanoseconds"].astype(np.int64)
 
 
-def _doubles(values: npt.NDArray[np.void]) -> FloatArray:
-    return values.astype(np.float64)
-
-
 def _parse_vectors(message: bytes) -> Layout[None]:
     template = Template(message)
     template.stamp()
@@ -171,7 +167,7 @@ def decode_joint_states(messages: Sequence[bytes]) -> tuple[list[JointStates], l
     for place, rows, names in groups_of(messages, _parse_joint_state, faults):
         arrays = []
         for name in ("position", "velocity", "effort"):
-            values = _doubles(rows[name])
+            values = rows[name].astype(np.float64)
             arrays.append(values if values.shape[1] == len(names) else np.full((len(rows), len(names)), np.nan))
         groups.append(JointStates(place, names, _stamps(rows), *arrays))
     return groups, sorted(faults)
@@ -181,7 +177,7 @@ def decode_multi_arrays(messages: Sequence[bytes]) -> tuple[list[MultiArrays], l
     """Decode serialised ``std_msgs/Float64MultiArray`` messages; see :func:`decode_joint_states`."""
     faults: list[Fault] = []
     groups = [
-        MultiArrays(place, dimensions, offset, _doubles(rows["data"]))
+        MultiArrays(place, dimensions, offset, rows["data"].astype(np.float64))
         for place, rows, (dimensions, offset) in groups_of(messages, _parse_multi_array, faults)
     ]
     return groups, sorted(faults)

@@ -9,17 +9,13 @@ import numpy.typing as npt
 from hd_monitor import contract
 from hd_monitor.arrays import IntArray
 from hd_monitor.contract import NANOSECONDS
+from hd_monitor.sources import INPUT_SOURCES
 
 from .imu import imu_readings
 from .settings import RigSettings
 from .simulation import Stretch
 
-MESSAGE_TYPES = {
-    contract.TORSIONAL_ACCELERATION_BLOCK: "std_msgs/msg/Float64MultiArray",
-    contract.TORSIONAL_ACCELERATION: "geometry_msgs/msg/AccelStamped",
-    contract.IMU: "sensor_msgs/msg/Imu",
-    contract.JOINT_STATES: "sensor_msgs/msg/JointState",
-}
+MESSAGE_TYPES = {source.topic: source.type.replace("/", "/msg/") for source in INPUT_SOURCES.values()}
 """By topic."""
 
 _PLAIN_CDR = b"\x00\x01\x00\x00"  # little-endian; alignment counts from behind it

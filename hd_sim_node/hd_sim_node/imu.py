@@ -48,7 +48,6 @@ def imu_readings(
         force[:, along] = STANDARD_GRAVITY
     turning[:, along] = motion.speed + motion.velocity
     # Mounted the other way round: rotated by half a turn about the outward axis.
-    force[:, tangential] *= sign
-    force[:, along] *= sign
+    force[:, [tangential, along]] *= sign
     turning[:, along] *= sign
     return force, turning

@@ -1,7 +1,7 @@
 """The rig in motion: the parametric model integrated along a speed programme, a stretch at a time."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import KW_ONLY, dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -73,13 +73,13 @@ class RigChunk:
         """Return the number of samples."""
         return int(self.times.size)
 
-    def vibration_at(self, times: npt.ArrayLike) -> Response:
+    def vibration_at(self, times: FloatArray) -> Response:
         """θ [rad] and θ' [rad/s] at `times` [s] within this stretch, by the integration's own cubic pieces."""
         spline = CubicHermiteSpline(self._fine_times, self._fine.displacement, self._fine.velocity)
-        at = np.asarray(times, dtype=np.float64)
-        return Response(spline(at), spline(at, nu=1))
+        return Response(spline(times), spline(times, nu=1))
 
 
+@dataclass(eq=False)
 class Rig:
     """A drive, a reducer with its defects and an inertia, turned by a speed programme.
 
@@ -111,24 +111,19 @@ class Rig:
     True
     """
 
-    def __init__(
-        self,
-        model: ParametricModel,
-        programme: SpeedProgramme,
-        *,
-        rate: float,
-        start_angle: float = 0.0,
-        surroundings: Surroundings | None = None,
-    ) -> None:
-        if not (math.isfinite(rate) and rate > 0.0):
-            raise ParameterError(f"rate = {rate!r} Hz is not a sampling rate; give a number above 0")
-        self.model = model
-        self.programme = programme
-        self.rate = rate
-        self.start_angle = start_angle
-        self.surroundings = surroundings or Surroundings()
-        self._next = 0
-        self._state: tuple[float, float] | None = None
+    model: ParametricModel
+    programme: SpeedProgramme
+    _: KW_ONLY
+    rate: float
+    start_angle: float = 0.0
+    surroundings: Surroundings = field(default_factory=Surroundings)
+    _next: int = field(default=0, init=False)
+    _state: tuple[float, float] | None = field(default=None, init=False)
+
+    def __post_init__(self) -> None:
+        """Check the rate."""
+        if not (math.isfinite(self.rate) and self.rate > 0.0):
+            raise ParameterError(f"rate = {self.rate!r} Hz is not a sampling rate; give a number above 0")
 
     def angle(self, times: npt.ArrayLike) -> FloatArray:
         """Output angle q [rad] at `times` [s]."""

@@ -7,7 +7,7 @@ import signal
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from importlib.metadata import EntryPoint
-from typing import Protocol, cast
+from types import ModuleType
 
 from ..errors import HdMonitorError
 from ..process import set_up_process
@@ -32,16 +32,6 @@ COMMANDS = {
 
 SIMULATOR_COMMANDS = {"demo": "simulate a defective reducer and watch it over real DDS"}
 """Help by subcommand of the simulator's package, listed even where that is not installed."""
-
-
-class Command(Protocol):
-    """The contents of a subcommand's module."""
-
-    def configure(self, parser: argparse.ArgumentParser) -> None:
-        """Add the command's arguments."""
-
-    def run(self, arguments: argparse.Namespace) -> int:
-        """Do the work; return the exit status."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -88,12 +78,13 @@ def guard(name: str, work: Callable[[], int]) -> int:
         return 130
 
 
-def _load(name: str, added: Mapping[str, EntryPoint]) -> Command:
+def _load(name: str, added: Mapping[str, EntryPoint]) -> ModuleType:
     if name in COMMANDS:
-        return cast("Command", importlib.import_module(f"hd_monitor.cli.{name}"))
+        return importlib.import_module(f"hd_monitor.cli.{name}")
     if name not in added:
         raise HdMonitorError(extensions.SIMULATOR_MISSING)
-    return cast("Command", added[name].load())
+    module: ModuleType = added[name].load()
+    return module
 
 
 def _missing(error: ModuleNotFoundError) -> str:
