@@ -89,11 +89,6 @@ class ToothPairRanking:
         return self.ranked[0].log_evidence - self.ranked[1].log_evidence if len(self.ranked) > 1 else math.inf
 
     @property
-    def stands_as_pair(self) -> bool:
-        """Whether two lines of the first pair stand out, as two and not one."""
-        return self.ranked[0].lines_found == 2 and self.as_pair >= MARGIN
-
-    @property
     def ambiguity(self) -> Ambiguity | None:
         """Why the ranking is not conclusive; None if it is.
 
@@ -107,7 +102,7 @@ class ToothPairRanking:
             return Ambiguity.NO_LINES
         if self.margin < MARGIN:
             return Ambiguity.SECOND_PAIR
-        if not self.stands_as_pair:
+        if best.lines_found < 2 or self.as_pair < MARGIN:
             return Ambiguity.SINGLE_LINE
         if math.isfinite(self.speed):
             return Ambiguity.ONE_SPEED

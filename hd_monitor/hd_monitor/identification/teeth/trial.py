@@ -1,4 +1,4 @@
-"""Whether the model with other tooth numbers explains the motion better, where the travel does not separate lines."""
+"""Whether the model with other tooth numbers explains the motion better: the proof where lines alone do not tell."""
 
 import math
 from collections.abc import Sequence

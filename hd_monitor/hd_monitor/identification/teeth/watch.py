@@ -9,28 +9,25 @@ from ...limitation import Limitation
 from ...model.parameters import Dynamics
 from ...reducer import Reducer
 from ..fit.gauss_newton import Fit
-from .candidates import ToothPair, strongest
+from .candidates import Candidate, ToothPair, strongest
 from .ranking import contradiction, rank, shows_two_lines
 from .spectrum import OrderSpectrum, with_segment
 
 FIRST_LOOK = 3.4
 """Motion [s] from which tooth numbers are questioned, and before which nothing is named."""
 
-LEAD = 30.0
-"""Log evidence by which other teeth must lead: far above chance, for lines that change with the speed are none that
-the regression knows, and those of the right teeth then trailed others by up to 22."""
+LEAD = 35.0
+"""Log evidence by which other teeth must lead: far above chance, for lines that change with the speed are none that the
+regression knows, and with those the right teeth were seen to trail others by up to 29."""
 
 GROWTH = 2.0
 """Factor by which motion must grow before the same candidates are compared once more."""
 
-APART = 0.75
-"""Output revolutions from which the two lines of the first pair are seen as two: half a one more than Fourier."""
-
-TONES_APART = 1.0
-"""Output revolutions from which a tone between two lines is not mistaken for both."""
+APART = 1.0
+"""Output revolutions from which two lines are seen as two, and not mistaken for a tone between them."""
 
 NEAR = 4.5
-"""Difference of tooth numbers up to which less travel than that blurs the lines of one pair into those of another."""
+"""Difference of tooth numbers up to which pairs share a line, or less travel than that blurs one into the other."""
 
 LEAST_TURNS = 0.2
 """Output revolutions below which the order spectrum is too blurred to suspect anything."""
@@ -92,8 +89,7 @@ class ToothWatch:
         given : Reducer
         harmonics : int
         trial : callable
-            Decides between the given reducer and others whose lines the travel does not separate, see
-            :meth:`ToothTrial.best`.
+            Decides between the given reducer and others near it where lines alone do not, see :meth:`ToothTrial.best`.
         seconds : float
             Motion seen.
         one_speed : bool
@@ -108,19 +104,19 @@ class ToothWatch:
         asked = tuple(candidate.teeth for candidate in candidates)
         if asked == self.asked and seconds < GROWTH * self.seconds:
             return self
-        parts = [self.signal.solve]
-        ranking = rank(candidates, parts)
-        best, own, doubt = ranking.ranked[0], ToothPair.of(given), None
-        several = best.pairs_found > 1 and not one_speed
-        if not several and self.signal.turns > TONES_APART:
-            several = shows_two_lines(candidates[asked.index(best.teeth)], parts)
-        if several and ranking.lead(own) > LEAD:
-            doubt = ranking.contradiction(given)
-        elif not one_speed and self.signal.turns < APART:
-            near = [pair for pair in ranking.contenders(own, LEAD) if abs(pair.flexspline - own.flexspline) < NEAR]
-            better = trial(given, [pair.reducer(given.mount) for pair in near]) if near else None
-            doubt = contradiction(given, ToothPair.of(better)) if better is not None else None
+        ranking = rank(candidates, [self.signal.solve])
+        best, own = ranking.ranked[0], ToothPair.of(given)
+        shown = {candidate.teeth for candidate in candidates if self._shows_pair(candidate)}
+        if ranking.lead(own) > LEAD and (best.teeth in shown or (best.pairs_found > 1 and not one_speed)):
+            return replace(self, asked=asked, seconds=seconds, doubt=ranking.contradiction(given))
+        open_to = set(asked) if self.signal.turns < APART and not one_speed else shown
+        near = [teeth for teeth in ranking.contenders(own, LEAD) if teeth in open_to and abs(teeth[0] - own[0]) < NEAR]
+        better = trial(given, [teeth.reducer(given.mount) for teeth in near]) if near else None
+        doubt = contradiction(given, ToothPair.of(better)) if better is not None else None
         return replace(self, asked=asked, seconds=seconds, doubt=doubt)
+
+    def _shows_pair(self, candidate: Candidate) -> bool:
+        return self.signal.turns > APART and shows_two_lines(candidate, [self.signal.solve])
 
     @property
     def _is_unexplained(self) -> bool:
