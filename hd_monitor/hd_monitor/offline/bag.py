@@ -3,29 +3,25 @@
 import re
 import tempfile
 from collections import Counter
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import ExitStack
 from pathlib import Path, PurePath
 from types import TracebackType
 from typing import Self
 
+import numpy as np
 import yaml
+from numpy.typing import NDArray
 
-from .batches import Batch, RawMessage, RawTopic, in_batches
+from .batches import Batch, RawMessage, RawTopic, Window, in_batches
 from .compression import MAGIC, decompress, decompress_file
 from .errors import BagError, one_line
 from .salvage import Walk, restore_length, walk_through
 from .sqlite import WholeSqlite, has_unsaved_rows
 from .whole_mcap import WholeMcap
-from .windows import Window, windows
-
-__all__ = ["Bag", "Window"]
 
 STORAGE_SUFFIXES = (".mcap", ".db3")
 COMPRESSED_SUFFIXES = (".zstd", ".zst")
-WINDOW = 12_000_000_000
-"""Recorded time [ns] that is handed over at once: long enough for bulk decoding, short enough for flat memory."""
-WINDOW_MESSAGES = 16_384
 
 
 class Bag:
@@ -81,31 +77,34 @@ class Bag:
 
         Where the recording turns out to be damaged, a note is made and what is still whole goes on coming.
         """
-        for batch in self._batches(topics):
-            yield from batch.rows()
+        names = list(dict.fromkeys(topics))
+        for batch in self._batches(names):
+            for time, place, data in zip(*(column.tolist() for column in batch), strict=True):
+                yield RawMessage(names[place], time, data)
 
     def windows(self, topics: Collection[str], *, pause: int = 0) -> Iterator[Window]:
-        """Yield the messages of `topics` by windows of recorded time; memory stays flat in the bag's length.
+        """Yield the messages of `topics` by the thousand; memory stays flat in the bag's length.
 
         A `pause` [ns] in the recording, unless 0, begins a new window.
         """
-        return windows(self._batches(topics), length=WINDOW, most=WINDOW_MESSAGES, pause=pause or WINDOW)
+        names = list(dict.fromkeys(topics))
+        for batch in self._batches(names):
+            yield from batch.windows(names, pause)
 
-    def _batches(self, topics: Collection[str]) -> Iterator[Batch]:
-        wanted = set(topics)
+    def _batches(self, names: Sequence[str]) -> Iterator[Batch]:
         for path, reader in self._parts:
-            delivered: Counter[str] = Counter()
+            delivered = np.zeros(len(names), dtype=np.intp)
             if not isinstance(reader, Walk):
                 try:
-                    for batch in reader.batches(wanted):
+                    for batch in reader.batches(names):
                         yield batch
-                        delivered += batch.counts()
+                        delivered += np.bincount(batch.topics, minlength=len(names))
                     continue
                 except Exception as error:  # a parser of damaged files raises anything
                     cause = f"{path.name} is damaged ({one_line(error)})"
                     self._note(f"{cause}; what is still whole is read piece by piece")
                     reader = self._walk(path)
-            yield from in_batches(_salvaged(reader, wanted, delivered))
+            yield from in_batches(_salvaged(reader, names, delivered))
 
     def _open(self) -> tuple[RawTopic, ...]:
         if not self.path.exists():
@@ -196,21 +195,22 @@ class Bag:
             self.notes.append(sentence)
 
 
-def _salvaged(walk: Walk, wanted: Collection[str], delivered: Counter[str]) -> Iterator[RawMessage]:
+def _salvaged(walk: Walk, names: Sequence[str], delivered: NDArray[np.intp]) -> Iterator[tuple[int, int, bytes]]:
     """Yield what is whole in a file, but for as many messages of each topic as have been delivered already."""
-    for message in walk.messages():
-        if message.topic not in wanted:
+    places = {name: place for place, name in enumerate(names)}
+    for name, time, data in walk.messages():
+        place = places.get(name)
+        if place is None:
             continue
-        data = message.data
         if data.startswith(MAGIC):
             try:
                 data = decompress("zstd", data, whole=False)
             except Exception:  # a damaged message is missing: the gap is counted further on
                 continue
-        if delivered[message.topic]:
-            delivered[message.topic] -= 1
+        if delivered[place]:
+            delivered[place] -= 1
             continue
-        yield message._replace(data=data)
+        yield time, place, data
 
 
 def _is_storage(file: Path) -> bool:

@@ -1,14 +1,13 @@
 """Messages handed on by the thousand, as columns: what costs little for one message costs much for a million."""
 
-from collections import Counter
-from collections.abc import Callable, Iterable, Iterator
-from itertools import islice
+import itertools
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
-ROWS = 1024
+ROWS = 4096
 """Messages taken at once from a source that gives them one by one."""
 
 
@@ -28,56 +27,54 @@ class RawMessage(NamedTuple):
     data: bytes
 
 
+class Window(NamedTuple):
+    """Messages without a pause: times of recording of the first and the last one [ns], and their bytes by topic."""
+
+    start: int
+    end: int
+    messages: dict[str, list[bytes]]
+
+
 class Batch(NamedTuple):
-    """Messages in the order of the recording.
+    """Messages in the order of the recording, in columns of shape (messages,)."""
 
-    Attributes
-    ----------
-    times : numpy.ndarray
-        Times of recording [ns].
-    topics : numpy.ndarray
-        Of each message the place of its topic in `names`.
-    names : sequence of str
-    data : list of bytes
-    """
-
-    times: NDArray[np.int64] | NDArray[np.uint64]
+    times: NDArray[np.integer[Any]]
+    """Times of recording [ns]."""
     topics: NDArray[np.intp]
-    names: list[str]
-    data: list[bytes]
-
-    def counts(self) -> Counter[str]:
-        """Return how many messages there are of each topic."""
-        return Counter(dict(zip(self.names, np.bincount(self.topics, minlength=len(self.names)).tolist(), strict=True)))
-
-    def rows(self) -> Iterator[RawMessage]:
-        """Yield the messages one by one."""
-        return map(RawMessage, map(self.names.__getitem__, self.topics.tolist()), self.times.tolist(), self.data)
+    """Of each message the place of its topic among those wanted."""
+    data: NDArray[np.object_]
+    """Serialised messages, as bytes."""
 
     @classmethod
-    def of_rows(cls, rows: Iterable[tuple[Any, int, bytes]], name: Callable[[Any], str]) -> Self:
-        """Turn messages, at least one, into columns; `name` gives the topic from the key that stands in its place."""
-        sources, times, data = zip(*rows, strict=True)
-        topics = {source: name(source) for source in dict.fromkeys(sources)}
-        names = list(dict.fromkeys(topics.values()))
-        place = {source: names.index(topic) for source, topic in topics.items()}
-        try:
-            stamps = np.fromiter(times, np.int64, len(times))
-        except OverflowError:  # MCAP counts from 0 to 2**64, and damage makes use of it
-            stamps = np.fromiter(times, np.uint64, len(times))
-        return cls(stamps, np.fromiter(map(place.__getitem__, sources), np.intp, len(sources)), names, list(data))
+    def of_rows(cls, rows: Iterable[tuple[int, int, bytes]]) -> Self:
+        """Turn messages, at least one, into columns."""
+        times, topics, data = zip(*rows, strict=True)
+        kind = np.int64 if max(times) < 2**63 else np.uint64  # MCAP counts to 2**64, and damage makes use of it
+        return cls(np.array(times, kind), np.array(topics), np.array(data, dtype=np.object_))
+
+    @classmethod
+    def joined(cls, batches: Iterable[Self]) -> Self:
+        """Put batches, at least one, together by time; messages of equal times stay in order."""
+        batch = cls(*map(np.concatenate, zip(*batches, strict=True)))
+        ordered = bool((batch.times[1:] >= batch.times[:-1]).all())
+        return batch if ordered else batch.part(np.argsort(batch.times, kind="stable"))
+
+    def part(self, which: NDArray[Any] | slice) -> Self:
+        """Return some of the messages, or all in another order."""
+        return type(self)(self.times[which], self.topics[which], self.data[which])
+
+    def windows(self, names: Sequence[str], pause: int) -> Iterator[Window]:
+        """Yield the messages by the names of their topics; a `pause` [ns], unless 0, begins a new window."""
+        # Unsigned times that go back look like a pause: one window more does no harm.
+        steps = self.times[1:] - self.times[:-1]
+        pauses = (np.flatnonzero(steps >= pause) + 1).tolist() if pause else []
+        for bounds in itertools.pairwise([0, *pauses, len(self.times)]):
+            times, topics, data = self.part(slice(*bounds))
+            found = {name: data[topics == place].tolist() for place, name in enumerate(names)}
+            if len(times):
+                yield Window(int(times[0]), int(times[-1]), {name: own for name, own in found.items() if own})
 
 
-def in_batches(rows: Iterator[tuple[Any, int, bytes]], name: Callable[[Any], str] = str) -> Iterator[Batch]:
-    """Yield the messages that `rows` gives; if it fails, what it gave before is yielded first."""
-    while True:
-        taken: list[tuple[Any, int, bytes]] = []
-        try:
-            taken.extend(islice(rows, ROWS))  # an iterator that fails leaves in the list what it gave
-        except Exception:
-            if taken:
-                yield Batch.of_rows(taken, name)
-            raise
-        if not taken:
-            return
-        yield Batch.of_rows(taken, name)
+def in_batches(rows: Iterable[tuple[int, int, bytes]]) -> Iterator[Batch]:
+    """Yield the messages that `rows` gives as time, place of the topic and bytes."""
+    return map(Batch.of_rows, itertools.batched(rows, ROWS))

@@ -1,12 +1,13 @@
 """Decompression of files, chunks and messages: Zstandard and LZ4."""
 
 from collections.abc import Iterable, Iterator
-from itertools import repeat
 from pathlib import Path
 from typing import Any
 
 import lz4.frame
+import numpy as np
 import zstandard
+from numpy.typing import NDArray
 
 MAGIC = b"\x28\xb5\x2f\xfd"
 """First bytes of Zstandard data; no CDR message begins so."""
@@ -52,17 +53,16 @@ def decompress(kind: str, data: bytes, *, whole: bool = True) -> bytes:
     return b"".join(_parts(kind, [data])) if whole else bytes(_decompressor(kind).decompress(data))
 
 
-def decompress_where_packed(messages: list[bytes]) -> list[bytes]:
-    """Decompress those messages that are compressed; their first bytes say so.
+def decompress_where_packed(messages: Iterable[bytes]) -> NDArray[np.object_]:
+    """Return messages, shape (messages,), those that are compressed decompressed; their first bytes say so.
 
     Raises
     ------
     Exception
         As `decompress`.
     """
-    if not any(map(bytes.startswith, messages, repeat(MAGIC))):
-        return messages
-    return [decompress("zstd", message) if message.startswith(MAGIC) else message for message in messages]
+    plain = [decompress("zstd", message) if message.startswith(MAGIC) else message for message in messages]
+    return np.array(plain, dtype=np.object_)
 
 
 def decompress_file(source: Path, target: Path) -> None:

@@ -130,28 +130,16 @@ class Messages(NamedTuple):
     begins: NDArray[np.int64]
     ends: NDArray[np.int64]
 
-    def part(self, which: NDArray[Any] | slice) -> Self:
-        """Return some of the messages, or all in another order."""
+    def part(self, which: NDArray[np.bool_]) -> Self:
+        """Return some of the messages."""
         return self._replace(
             times=self.times[which], channels=self.channels[which], begins=self.begins[which], ends=self.ends[which]
         )
-
-    def by_time(self) -> Self:
-        """Return the messages in the order of their times; those of equal times stay in the order of the file."""
-        if (self.times[1:] >= self.times[:-1]).all():
-            return self
-        return self.part(np.argsort(self.times, kind="stable"))
 
     def data(self) -> list[bytes]:
         """Return the serialised messages themselves."""
         content = self.content
         return [content[begin:end] for begin, end in zip(self.begins.tolist(), self.ends.tolist(), strict=True)]
-
-    def may_begin(self, beginning: bytes) -> bool:
-        """Whether any message could begin with these four bytes; False is certain."""
-        last = max(len(self.content) - 4, 0)  # a shorter message stands for what it ends with
-        places = np.minimum(self.begins, last)
-        return bool((_numbers(self.content, "<u4", places) == int.from_bytes(beginning, "little")).any())
 
 
 class Records(NamedTuple):

@@ -4,7 +4,8 @@ import sys
 import time
 
 from ..contract import NANOSECONDS
-from .bag import Bag, Window
+from .bag import Bag
+from .batches import Window
 
 _ON_TERMINAL = 0.2
 _ELSEWHERE = 5.0

@@ -9,7 +9,8 @@ from ..contract import NANOSECONDS
 from ..identification.identifier import Identifier
 from ..identification.sensorless.identifier import SensorlessIdentifier
 from ..monitor import Monitor
-from .bag import Bag, Window
+from .bag import Bag
+from .batches import Window
 from .plan import JointPlan
 
 Progress = Callable[[Window], None]

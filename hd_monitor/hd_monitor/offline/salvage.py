@@ -11,6 +11,7 @@ from abc import ABC, abstractmethod
 from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import closing
+from operator import itemgetter
 from pathlib import Path
 from typing import BinaryIO
 
@@ -128,8 +129,9 @@ class McapWalk(Walk):
         records = Records.parse(content)
         for code, part in records.others:
             self._channels.learn(code, part)
-        found = records.messages.by_time()
-        return zip(found.channels.tolist(), found.times.tolist(), found.data(), strict=True)
+        found = records.messages
+        rows = zip(found.channels.tolist(), found.times.tolist(), found.data(), strict=True)
+        return iter(sorted(rows, key=itemgetter(1)))
 
 
 def restore_length(source: Path, target: Path) -> bool:

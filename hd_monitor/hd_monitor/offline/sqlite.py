@@ -1,7 +1,7 @@
 """SQLite storage files, read by the schema of rosbag2_storage_sqlite3: tables ``topics`` and ``messages``."""
 
 import sqlite3
-from collections.abc import Collection, Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import closing
 from pathlib import Path
 
@@ -56,19 +56,20 @@ class WholeSqlite:
         """Return the topics and how many messages each has."""
         return list(self._topics.values())
 
-    def batches(self, wanted: Collection[str]) -> Iterator[Batch]:
-        """Yield the messages of the topics in `wanted` by their times, those of equal times as they were written.
+    def batches(self, names: Sequence[str]) -> Iterator[Batch]:
+        """Yield the messages of the topics of these names by time, those of equal times as they were written.
 
         Raises
         ------
         Exception
             If the file is damaged.
         """
-        topics = {number: name for number, (name, _, _) in self._topics.items() if name in wanted}
+        places = {number: names.index(name) for number, (name, _, _) in self._topics.items() if name in names}
         query = (
-            f"SELECT topic_id, timestamp, data FROM messages WHERE topic_id IN ({', '.join('?' * len(topics))}) "
+            f"SELECT timestamp, topic_id, data FROM messages WHERE topic_id IN ({', '.join('?' * len(places))}) "
             "ORDER BY timestamp, id"
         )
         with closing(connect(self._path)) as database:
-            for batch in in_batches(database.execute(query, tuple(topics)), topics.__getitem__):
+            rows = database.execute(query, tuple(places))
+            for batch in in_batches((time, places[number], data) for time, number, data in rows):
                 yield batch._replace(data=decompress_where_packed(batch.data))

@@ -3,7 +3,7 @@
 The package reads messages too, one by one; ``tests/benchmarks/replay_speed.py`` prints how much longer that takes.
 """
 
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from itertools import zip_longest
 from pathlib import Path
 from typing import BinaryIO
@@ -15,8 +15,8 @@ from mcap.summary import Summary
 from numpy.typing import NDArray
 
 from .batches import Batch, RawTopic
-from .compression import MAGIC, decompress_where_packed
-from .mcap_records import DamageError, Messages, Records, read_chunk
+from .compression import decompress_where_packed
+from .mcap_records import DamageError, Records, read_chunk
 
 _CHANNELS = 1 << 16
 
@@ -58,8 +58,8 @@ class WholeMcap:
         channels = self._summary.channels.items()
         return [RawTopic(c.topic, types.get(c.schema_id, ""), self._counts.get(number, 0)) for number, c in channels]
 
-    def batches(self, wanted: Collection[str]) -> Iterator[Batch]:
-        """Yield the messages of the topics in `wanted` by their times, those of equal times in the order of the file.
+    def batches(self, names: Sequence[str]) -> Iterator[Batch]:
+        """Yield the messages of the topics of these names by time, those of equal times in the order of the file.
 
         Only chunks that overlap in time are held in memory together.
 
@@ -70,22 +70,19 @@ class WholeMcap:
         Exception
             If something cannot be decompressed; the class is the decompressor's own.
         """
-        topics = {number: c.topic for number, c in self._summary.channels.items() if c.topic in wanted}
-        names = list(dict.fromkeys(topics.values()))
-        place = np.full(_CHANNELS, -1, dtype=np.intp)  # of the channel's topic among the names
-        for channel, name in topics.items():
-            place[channel] = names.index(name)
+        topics = {number: names.index(c.topic) for number, c in self._summary.channels.items() if c.topic in names}
+        places = np.full(_CHANNELS, -1, dtype=np.intp)
+        places[list(topics)] = list(topics.values())
         ordered = _holding(self._summary.chunk_indexes, topics)
-        held: dict[int, Messages] = {}  # by the places of their chunks
+        held: dict[int, Batch] = {}  # by the places of their chunks
         with self._path.open("rb") as file:
             for chunk, following in zip_longest(ordered, ordered[1:]):
-                messages = _read(file, chunk)
-                held[chunk.chunk_start_offset] = messages.part(place[messages.channels] >= 0).by_time()
+                held[chunk.chunk_start_offset] = Batch.joined([_read(file, chunk, places)])
                 # What is not older than the next chunk's first message has to wait for that chunk.
                 cuts = {begin: _older(held[begin], following) for begin in sorted(held)}
-                yield _merged([held[begin].part(slice(cut)) for begin, cut in cuts.items()], names, place)
-                held = {begin: held[begin].part(slice(cut, None)) for begin, cut in cuts.items()}
-                held = {begin: messages for begin, messages in held.items() if messages.times.size}
+                yield Batch.joined(held[begin].part(slice(cut)) for begin, cut in cuts.items())
+                held = {begin: batch.part(slice(cuts[begin], None)) for begin, batch in held.items()}
+                held = {begin: batch for begin, batch in held.items() if batch.times.size}
 
 
 def _holding(chunks: Iterable[ChunkIndex], channels: Collection[int]) -> list[ChunkIndex]:
@@ -95,7 +92,7 @@ def _holding(chunks: Iterable[ChunkIndex], channels: Collection[int]) -> list[Ch
     return sorted(found, key=lambda chunk: (chunk.message_start_time, chunk.chunk_start_offset))
 
 
-def _read(file: BinaryIO, chunk: ChunkIndex) -> Messages:
+def _read(file: BinaryIO, chunk: ChunkIndex, places: NDArray[np.intp]) -> Batch:
     records = Records.parse(read_chunk(file, chunk))
     times = records.messages.times
     begin = chunk.chunk_start_offset
@@ -103,27 +100,14 @@ def _read(file: BinaryIO, chunk: ChunkIndex) -> Messages:
         raise DamageError(f"the records of the chunk at byte {begin} do not fill it")
     if times.size and not chunk.message_start_time <= int(times.min()) <= int(times.max()) <= chunk.message_end_time:
         raise DamageError(f"the chunk at byte {begin} holds messages of other times than announced")
-    return records.messages
+    topics = places[records.messages.channels]
+    messages = records.messages.part(topics >= 0)
+    return Batch(messages.times, topics[topics >= 0], decompress_where_packed(messages.data()))
 
 
-def _older(messages: Messages, following: ChunkIndex | None) -> int:
+def _older(batch: Batch, following: ChunkIndex | None) -> int:
     """Count the messages older than a chunk; all are if none follows."""
     if following is None:
-        return len(messages.times)
+        return len(batch.times)
     # As an int, the time would be compared in floating point, which does not hold it.
-    return int(np.searchsorted(messages.times, np.uint64(following.message_start_time)))
-
-
-def _merged(parts: list[Messages], names: list[str], place: NDArray[np.intp]) -> Batch:
-    times = np.concatenate([part.times for part in parts])
-    topics = place[np.concatenate([part.channels for part in parts])]
-    data = [message for part in parts for message in _data(part)]
-    if len(parts) > 1:
-        order = np.argsort(times, kind="stable")
-        times, topics, data = times[order], topics[order], [data[index] for index in order.tolist()]
-    return Batch(times, topics, names, data)
-
-
-def _data(messages: Messages) -> list[bytes]:
-    data = messages.data()
-    return decompress_where_packed(data) if messages.may_begin(MAGIC) else data
+    return int(np.searchsorted(batch.times, np.uint64(following.message_start_time)))

@@ -12,7 +12,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.hd_monitor.offline import recordings as rec
 
-from hd_monitor.offline.bag import WINDOW, Bag
+from hd_monitor.offline.bag import Bag
+from hd_monitor.offline.batches import ROWS
 from hd_monitor.offline.errors import BagError
 
 BLOCKS, STATES = "/torsional_acceleration/block", "/joint_states"
@@ -47,12 +48,13 @@ def test_every_form_reads_the_same(tmp_path: Path, storage: object, compression:
     assert Counter(message.data for message in messages) == serialised
 
 
-def test_windows_hold_every_message_once_and_stay_short(tmp_path: Path) -> None:
-    path = rec.write(tmp_path / "bag", rec.small(30.0))
+@pytest.mark.parametrize(("storage", "most"), [(rec.MCAP, 6000), (rec.SQLITE, ROWS)])  # MCAP: a chunk of 1 MiB
+def test_windows_hold_every_message_once_and_stay_short(tmp_path: Path, storage: object, most: int) -> None:
+    path = rec.write(tmp_path / "bag", rec.small(90.0), storage=storage)
     with Bag(path) as bag:
         windows = list(bag.windows(BOTH))
-    assert sum(len(window.messages[STATES]) for window in windows) == 3000
-    assert max(len(window.messages[STATES]) for window in windows) <= WINDOW // 10_000_000 + 1
+    assert sum(len(window.messages[STATES]) for window in windows) == 9000
+    assert max(len(window.messages[STATES]) for window in windows) <= most
     assert [window.end for window in windows] == sorted(window.end for window in windows)
 
 

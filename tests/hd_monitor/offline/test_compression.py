@@ -35,4 +35,4 @@ def test_an_unknown_compression_is_named() -> None:
 
 
 def test_only_compressed_messages_are_decompressed() -> None:
-    assert decompress_where_packed([b"\0\1", PACKED["zstd"], b""]) == [b"\0\1", TEXT, b""]
+    assert decompress_where_packed([b"\0\1", PACKED["zstd"], b""]).tolist() == [b"\0\1", TEXT, b""]

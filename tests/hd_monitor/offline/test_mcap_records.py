@@ -48,10 +48,6 @@ def test_other_records_are_handed_on() -> None:
     assert Records.parse(other + CONTENT + other).others == [(0x0C, b"abc")] * 2
 
 
-def test_messages_of_equal_times_stay_in_the_order_of_the_file() -> None:
-    assert Records.parse(CONTENT).messages.by_time().data() == [b"", b"fifty", b"more"]
-
-
 @pytest.mark.parametrize("compression", ["", "lz4", "zstd"])
 def test_a_chunk_of_another_size_or_checksum_than_announced_is_damaged(compression: str) -> None:
     size, checksum, packed = len(CONTENT), zlib.crc32(CONTENT), mcap_files.PACK[compression](CONTENT)

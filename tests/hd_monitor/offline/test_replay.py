@@ -9,7 +9,7 @@ from tests.hd_monitor.offline import recordings as rec
 
 from hd_monitor.diagnosis.status import status_of
 from hd_monitor.diagnosis.verdict import Component, FaultCode
-from hd_monitor.offline import bag as bag_module
+from hd_monitor.offline import batches
 from hd_monitor.offline.bag import Bag
 from hd_monitor.offline.errors import BagError
 from hd_monitor.offline.plan import Request, plan
@@ -55,14 +55,14 @@ def test_storage_and_compression_change_nothing(recording: Path, rig: list[rec.E
     assert statuses(run(rec.write(tmp_path / "packed", rig, compression="storage"))) == expected
 
 
-@pytest.mark.parametrize(("window", "messages"), [(10**8, 7), (10**10, 10**6)])
+@pytest.mark.parametrize("messages", [7, 10**6])
 def test_how_messages_are_bundled_changes_nothing(
-    recording: Path, monkeypatch: pytest.MonkeyPatch, window: int, messages: int
+    recording: Path, rig: list[rec.Event], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, messages: int
 ) -> None:
     expected = statuses(run(recording))
-    monkeypatch.setattr(bag_module, "WINDOW", window)
-    monkeypatch.setattr(bag_module, "WINDOW_MESSAGES", messages)
-    assert statuses(run(recording)) == expected
+    database = rec.write(tmp_path / "sqlite", rig, storage=rec.SQLITE)
+    monkeypatch.setattr(batches, "ROWS", messages)
+    assert statuses(run(database)) == expected
 
 
 def test_recording_delays_change_nothing_but_the_order(rig: list[rec.Event], recording: Path, tmp_path: Path) -> None:
