@@ -8,8 +8,8 @@ import numpy as np
 
 from ...arrays import FloatArray
 from ...orders.line_orders import LineOrders
+from ...orders.order_spectrum import HIGHEST_ORDER
 from ...reducer import WAVE_GENERATOR_LOBES, LinePair, Mount, Reducer
-from .spectrum import HIGHEST_ORDER
 
 TOOTH_RANGE = (60, 320)
 """Flexspline teeth looked at: reductions 30 to 160, as catalogues have them."""

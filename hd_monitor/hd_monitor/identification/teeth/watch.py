@@ -7,11 +7,12 @@ import numpy as np
 
 from ...limitation import Limitation
 from ...model.parameters import Dynamics
+from ...orders.order_spectrum import OrderSpectrum
 from ...reducer import Reducer
 from ..fit.gauss_newton import Fit
 from .candidates import Candidate, ToothPair, strongest
 from .ranking import contradiction, rank, shows_two_lines
-from .spectrum import OrderSpectrum, with_segment
+from .spectrum import with_segment
 
 FIRST_LOOK = 3.4
 """Motion [s] from which tooth numbers are questioned, and before which nothing is named."""

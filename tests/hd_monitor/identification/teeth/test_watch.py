@@ -10,9 +10,9 @@ from tests.simulated.cases import Case, simulate
 from hd_monitor.diagnosis.limitations import describe_limitation
 from hd_monitor.identification.identifier import Identifier
 from hd_monitor.identification.teeth.candidates import STRONGEST, ToothPair, strongest
-from hd_monitor.identification.teeth.spectrum import PER_TURN, TURNS, OrderSpectrum
 from hd_monitor.identification.teeth.watch import FIRST_LOOK, GROWTH, ToothWatch
 from hd_monitor.model import Dynamics, ParametricModel, StiffnessSeries, Torque
+from hd_monitor.orders.order_spectrum import PER_TURN, TURNS, OrderSpectrum
 from hd_monitor.reducer import Reducer
 
 RIG = Reducer()
