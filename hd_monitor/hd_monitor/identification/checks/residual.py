@@ -170,7 +170,7 @@ class LineResidual:
         return math.sqrt(beyond / explained) if explained > 0.0 else 0.0
 
     def inflation(self, span: float) -> float:
-        """Factor on the variances that owns up to the misfit: 1 as long as chance explains it.
+        """Factor by which the misfit widens the variances: 1 as long as chance explains it.
 
         Parameters
         ----------

@@ -66,12 +66,7 @@ def other_starts(unknowns: Unknowns, *, frequency: bool, delay: bool, thorough: 
         wanted += [(unknowns.frequency, shift) for shift in START_FREQUENCIES[first::step]]
     if delay:
         wanted += [(unknowns.delay, lag) for lag in START_DELAYS[first::step]]
-    starts = []
-    for place, value in wanted:
-        start = unknowns.zero()
-        start[place] = value
-        starts.append(start)
-    return starts
+    return [np.where(unknowns.mask(place), value, 0.0) for place, value in wanted]
 
 
 def signal_level(segments: Sequence[Segment]) -> NoiseFloor:

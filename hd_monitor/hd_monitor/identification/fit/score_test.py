@@ -37,7 +37,7 @@ class ScoreTest:
 def score_tests(
     places: Sequence[int], information: Information, values: FloatArray, active: BoolArray, given_std: FloatArray
 ) -> dict[int, ScoreTest]:
-    """Efficient score_tests of some unknowns.
+    """Efficient score tests of some unknowns.
 
     Parameters
     ----------

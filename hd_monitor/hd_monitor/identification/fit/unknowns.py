@@ -22,11 +22,7 @@ names a part is said to stand out as soon as the data bear it.
 class Unknowns:
     """Layout of the vector of unknowns.
 
-    In this order: real parts of the circular spline's β phasors (one a harmonic), their imaginary parts, the same of
-    the flexspline, real parts of the load phasors (one an order; in units of the reference torque), their imaginary
-    parts; then the logarithms of natural frequency, damping ratio and torque relative to the given ones, the time [s]
-    by which the motion's stamps lag behind the vibration's, and the part of the inertia whose own acceleration winds
-    up the reducer beside the known torque.
+    The parts come in the order of the properties below; phasors as all their real parts, then all imaginary parts.
 
     Attributes
     ----------
@@ -41,12 +37,12 @@ class Unknowns:
 
     @property
     def circular_spline(self) -> slice:
-        """Place of the circular spline's β."""
+        """Place of the circular spline's β phasors, one a harmonic."""
         return slice(0, 2 * self.harmonics)
 
     @property
     def flexspline(self) -> slice:
-        """Place of the flexspline's β."""
+        """Place of the flexspline's β phasors."""
         return slice(2 * self.harmonics, 4 * self.harmonics)
 
     @property
@@ -56,7 +52,7 @@ class Unknowns:
 
     @property
     def load(self) -> slice:
-        """Place of the load phasors."""
+        """Place of the load phasors, one an order, in units of the reference torque."""
         return slice(4 * self.harmonics, 4 * self.harmonics + 2 * len(self.load_orders))
 
     @property
@@ -76,12 +72,12 @@ class Unknowns:
 
     @property
     def delay(self) -> int:
-        """Place of the delay [s]."""
+        """Place of the time [s] by which the motion's stamps lag behind the vibration's."""
         return self.frequency + 3
 
     @property
     def inertia(self) -> int:
-        """Place of the part of the inertia that the known torque leaves out."""
+        """Place of the part of the inertia whose own acceleration winds up the reducer beside the known torque."""
         return self.frequency + 4
 
     @property
@@ -107,39 +103,34 @@ class Unknowns:
 
     def given_std(self) -> FloatArray:
         """Standard deviations of the unknowns before any data, shape (unknowns,)."""
-        std = np.empty(self.size)
-        std[self.stiffness] = 0.3
-        std[self.load] = 2.0
-        std[self.frequency] = 0.1
-        std[self.damping] = 0.5
-        std[self.torque] = 1.5
-        std[self.delay] = 0.01
-        std[self.inertia] = 0.7
-        return std
+        return self._scale(0)
 
     def bounds(self) -> FloatArray:
         """Magnitudes that the unknowns cannot exceed, shape (unknowns,): a value there is not a measurement."""
-        bounds = np.full(self.size, np.inf)
-        bounds[self.frequency] = math.log(FREQUENCY_MARGIN)
-        bounds[self.damping] = 1.5
-        bounds[self.torque] = 4.0
-        bounds[self.delay] = 0.05
-        return bounds
+        return self._scale(1)
 
     def linear_range(self) -> FloatArray:
         """Steps over which the prediction's derivatives change by about their own size, shape (unknowns,).
 
         Near a resonance they are small.
         """
-        span = np.empty(self.size)
-        span[self.stiffness] = 0.05
-        span[self.load] = 1.0
-        span[self.frequency] = 0.01
-        span[self.damping] = 0.3
-        span[self.torque] = 1.0
-        span[self.delay] = 5e-4
-        span[self.inertia] = 1.0
-        return span
+        return self._scale(2)
+
+    def _scale(self, column: int) -> FloatArray:
+        table: tuple[tuple[int | slice, float, float, float], ...] = (
+            # place, standard deviation before any data, bound, linear range
+            (self.stiffness, 0.3, math.inf, 0.05),
+            (self.load, 2.0, math.inf, 1.0),
+            (self.frequency, 0.1, math.log(FREQUENCY_MARGIN), 0.01),
+            (self.damping, 0.5, 1.5, 0.3),
+            (self.torque, 1.5, 4.0, 1.0),
+            (self.delay, 0.01, 0.05, 5e-4),
+            (self.inertia, 0.7, math.inf, 1.0),
+        )
+        scale = np.empty(self.size)
+        for place, *row in table:
+            scale[place] = row[column]
+        return scale
 
     def phasors(self, values: FloatArray, part: slice) -> ComplexArray:
         """Complex phasors of one of the parts, shape (harmonics,) or (load orders,)."""

@@ -173,7 +173,7 @@ def _evidence(candidate: Candidate, parts: Sequence[FitLines]) -> ToothPairEvide
     """Sum the evidence for a candidate's lines over parts and multiples."""
     total, chances, found, determined = 0.0, {}, {}, {}
     for k in candidate.multiples:
-        fits = _fits(candidate.teeth, k, parts)
+        fits = _fits(LineOrders.of_pair(candidate.teeth.lines(k)), parts)
         if not fits:
             continue
         determined[k] = sum(fit.log_evidence for fit in fits)
@@ -181,7 +181,8 @@ def _evidence(candidate: Candidate, parts: Sequence[FitLines]) -> ToothPairEvide
         chances[k] = float(chance.min())
         found[k] = [order for order, own in zip(candidate.teeth.lines(k), chance, strict=True) if own < CHANCE]
     if any(found.values()):
-        total = sum(fit.log_evidence for k in candidate.further for fit in _fits(candidate.teeth, k, parts))
+        further = [LineOrders.of_pair(candidate.teeth.lines(k)) for k in candidate.further]
+        total = sum(fit.log_evidence for orders in further for fit in _fits(orders, parts))
     return ToothPairEvidence(
         teeth=candidate.teeth,
         log_evidence=total + sum(determined.values()) if determined else -math.inf,
@@ -192,20 +193,20 @@ def _evidence(candidate: Candidate, parts: Sequence[FitLines]) -> ToothPairEvide
     )
 
 
-def _fits(teeth: ToothPair, k: float, parts: Sequence[FitLines]) -> list[LineFit]:
-    """The k-th pair of lines, fitted to every part that determines it."""
-    orders = LineOrders.of_pair(teeth.lines(k))
+def _fits(orders: LineOrders, parts: Sequence[FitLines]) -> list[LineFit]:
+    """Fit lines to every part that determines them."""
     return [fit for part in parts if (fit := part(orders)) is not None]
+
+
+def _log_evidence(orders: LineOrders, parts: Sequence[FitLines]) -> float:
+    return sum(fit.log_evidence for fit in _fits(orders, parts))
 
 
 def _odds_as_pair(pair: LineOrders, parts: Sequence[FitLines]) -> float:
     """Logarithm of the odds for two lines against a single one, at either place or between: what travel must part."""
     lower, upper = pair.lines
     single = [replace(pair, lines=np.array([order])) for order in np.arange(lower, upper + 1.0)]
-    both, *alone = (
-        sum(fit.log_evidence for part in parts if (fit := part(orders)) is not None) for orders in (pair, *single)
-    )
-    return both - max(0.0, *alone)
+    return _log_evidence(pair, parts) - max(0.0, *(_log_evidence(orders, parts) for orders in single))
 
 
 def shows_two_lines(candidate: Candidate, parts: Sequence[FitLines]) -> bool:
@@ -213,6 +214,6 @@ def shows_two_lines(candidate: Candidate, parts: Sequence[FitLines]) -> bool:
     for k in candidate.multiples:
         lower, upper = candidate.teeth.lines(k)
         orders = LineOrders.of_pair(candidate.teeth.lines(k), motor=np.arange(lower - 2.0, upper + 3.0))
-        if any(fit.chances.max() < CERTAIN for part in parts if (fit := part(orders)) is not None):
+        if any(fit.chances.max() < CERTAIN for fit in _fits(orders, parts)):
             return True
     return False

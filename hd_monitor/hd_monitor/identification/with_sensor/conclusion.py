@@ -62,16 +62,17 @@ def conclude(context: Context, state: State, fit: Fit) -> Identification:
         signal_to_noise=_signal_to_noise(fit.segments),
         relative=relative,
     )
+    circular_spline, flexspline = u.phasors(values, u.circular_spline), u.phasors(values, u.flexspline)
     model = ParametricModel(
         reducer=reducer,
         dynamics=dynamics,
-        circular_spline=StiffnessSeries.from_phasors(u.phasors(values, u.circular_spline)),
-        flexspline=StiffnessSeries.from_phasors(u.phasors(values, u.flexspline)),
+        circular_spline=StiffnessSeries.from_phasors(circular_spline),
+        flexspline=StiffnessSeries.from_phasors(flexspline),
         torque=Torque(mean=0.0),
     )
     return Identification(
-        circular_spline=u.phasors(values, u.circular_spline),
-        flexspline=u.phasors(values, u.flexspline),
+        circular_spline=circular_spline,
+        flexspline=flexspline,
         index=indexes.index,
         index_std=indexes.std,
         index_correlation=indexes.correlation,
@@ -112,9 +113,7 @@ def _of_phasors(covariance: FloatArray, part: slice) -> FloatArray:
     """Covariance of real and imaginary part of each phasor of a part, shape (phasors, 2, 2)."""
     own = covariance[part, part]
     size = own.shape[0] // 2
-    k = np.arange(size)
-    places = np.stack([k, k + size], axis=1)
-    return np.asarray(own[places[:, :, None], places[:, None, :]])
+    return np.asarray(np.einsum("akbk->kab", own.reshape(2, size, 2, size)))
 
 
 def _signal_to_noise(segments: Sequence[LinearisedSegment]) -> float:
