@@ -24,7 +24,7 @@ class SensorSettings:
     resolution: float = number(0.0, "rad/s²", 0.0, 1e9, "step of the sensor's values; 0: continuous")
     stuck_after: float = number(0.0, "s", 0.0, 1e7, "time after which the sensor repeats its last value; 0: never")
     jitter: float = number(0.0, "s", 0.0, 10.0, "standard deviation of the stamps")
-    delay: float = number(0.0, "s", -10.0, 10.0, "what the stamps are late by")
+    delay: float = number(0.0, "s", -10.0, 10.0, "by how much the stamps are late")
 
 
 class Accelerometer:

@@ -19,7 +19,7 @@ class TransportSettings:
 
     loss: float = number(0.0, "", 0.0, 1.0, "vibration messages lost, as a fraction")
     duplicates: float = number(0.0, "", 0.0, 1.0, "vibration messages that come twice, as a fraction")
-    late: float = number(0.0, "", 0.0, 1.0, "vibration messages that come behind up to three later ones, as a fraction")
+    late: float = number(0.0, "", 0.0, 1.0, "vibration messages that arrive after up to three later ones, a fraction")
 
 
 class Dispatch(NamedTuple):

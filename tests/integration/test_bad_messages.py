@@ -89,9 +89,9 @@ def test_stamps_that_stand_still(listening: Bench, feeder: Feeder) -> None:
     def reported() -> bool:
         block.data[3] += 1.0
         feeder.blocks.publish(block)
-        return any("stand still" in s.message for s in listening.statuses)
+        return any("stamps are stuck" in s.message for s in listening.statuses)
 
-    listening.until(reported, "a report of stamps that stand still")
+    listening.until(reported, "a report of stuck stamps")
     assert_recovers(listening, feeder)
 
 

@@ -26,12 +26,12 @@ HEAD = """\
 The nodes take their parameters from ordinary ROS parameter files (`--ros-args --params-file FILE`) or one by one
 (`-p NAME:=VALUE`); `hd-monitor parameters --format yaml` prints such a file with every default. A value that is out of
 range, of the wrong type or in conflict with others ends the node with status 2 and one line that says why; at run time
-it is refused with the same message. A whole number may stand where a real one is expected. A parameter that both nodes
+it is refused with the same message. An integer is accepted where a real number is expected. A parameter that both nodes
 have means the same in both, so that one file can serve both.
 """
 
 MONITOR_HEAD = """
-With one joint the parameters stand at the top level. With several (`joints: [shoulder, elbow]`) those at the top level
+With one joint the parameters are at the top level. With several (`joints: [shoulder, elbow]`) those at the top level
 are common to all, and each joint may override any of them below its name (`elbow.reducer.serial`). `diagnosis.*` may be
 changed while the node runs (with several joints: below the joint's name); everything else is fixed at the start. A
 parameter file may be shared with other nodes: names outside the groups below are ignored with a warning.

@@ -38,13 +38,13 @@ def lost(losses: Sequence[Loss], fault: str, timeout: float) -> Verdict:
     """Say that inputs have not come, or not been of use because of `fault`, for `timeout` [s] while others have."""
     if silent := [loss.quantity for loss in losses if loss.silent]:
         return _error(
-            f"No {_listed(silent)} for {timeout:g} s or more while other input goes on: "
+            f"No {_listed(silent)} for {timeout:g} s or more while other input continues: "
             "check the publisher, the topic's name and the stamps",
             FaultCode.INPUT_LOST,
         )
     words = _WORDS[losses[0].quantity]
     return _error(
-        f"No usable {words} for {timeout:g} s or more, though messages come: {fault}; check the sensor",
+        f"No usable {words} for {timeout:g} s or more, although messages arrive: {fault}; check the sensor",
         FaultCode.INPUT_INVALID,
     )
 
@@ -57,7 +57,7 @@ def lost_by_clock(losses: Sequence[Loss], stamps: Mapping[Quantity, int], fault:
         if loss.silent:
             reasons.append(f"no {words} for {loss.since / NANOSECONDS:.0f} s: {explain(loss.quantity)}")
         else:
-            still = "" if stamp is None else f"their stamps stand still at {stamp / NANOSECONDS:.3f} s"
+            still = "" if stamp is None else f"their stamps are stuck at {stamp / NANOSECONDS:.3f} s"
             reasons.append(f"messages with the {words} come but cannot be used: {fault or still}")
     silent = any(loss.silent for loss in losses)
     return _error(_sentence("; ".join(reasons)), FaultCode.INPUT_LOST if silent else FaultCode.INPUT_INVALID)
@@ -80,7 +80,7 @@ def internal_error(error: Exception) -> Verdict:
     """Say that the core failed."""
     return _error(
         f"Internal error, please report it: {type(error).__name__}: {error}; this joint's evidence was dropped and its "
-        "watch starts afresh",
+        "monitoring restarts",
         FaultCode.INTERNAL_ERROR,
     )
 
@@ -92,7 +92,7 @@ WAITING = Verdict(
     reason="Waiting for the first data: no verdict is possible yet",
 )
 NO_SIMULATED_TIME = replace(
-    WAITING, reason="use_sim_time is set, but no simulated time has come yet: does anything publish /clock?"
+    WAITING, reason="use_sim_time is set, but no simulated time has arrived yet: does anything publish /clock?"
 )
 
 
@@ -114,13 +114,13 @@ def not_enough(
     if not settings.sensorless and Quantity.VIBRATION not in period.usable:
         return f"No usable vibration sample in the last period: {fault}"
     if not speed >= settings.analysis.minimum_speed:
-        return "The joint has not turned enough yet: the lines show in motion only"
+        return "The joint has not turned enough yet: the lines appear only in motion"
     if not settings.sensorless and settings.reducer.line_frequencies(speed).circular_spline > 0.5 * rate:
         return (
             f"At {speed:.0f} rpm all lines lie above half the sampling rate of {rate:.0f} Hz: check that positions "
             "are in rad on the output side, or sample faster"
         )
-    return "Not enough motion seen yet: let the joint turn on"
+    return "Not enough motion seen yet: keep the joint turning"
 
 
 def with_assumed_torque(verdict: Verdict, torque: float) -> Verdict:

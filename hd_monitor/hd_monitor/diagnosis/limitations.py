@@ -11,7 +11,7 @@ _BOTH_DIRECTIONS = "; ".join(
 )
 
 _CORRECT_TEETH = (
-    "the {given} given; correct reducer.flexspline_teeth and reducer.circular_spline_teeth, for with wrong ones no "
+    "the {given} given; correct reducer.flexspline_teeth and reducer.circular_spline_teeth, since with wrong ones no "
     "part can be named"
 )
 
@@ -33,22 +33,22 @@ SENTENCES: Mapping[LimitationCode, str] = {
     ),
     LimitationCode.TORQUE_TOO_SMALL: (
         "The vibration contradicts the torque given, which seems to be larger: check load.torque or the effort's unit; "
-        "the indexes' scale rests on it"
+        "the indexes' scale depends on it"
     ),
     LimitationCode.TORQUE_TOO_LARGE: (
         "The vibration contradicts the torque given, which seems to be smaller: check load.torque or the effort's "
-        "unit; the indexes' scale rests on it"
+        "unit; the indexes' scale depends on it"
     ),
     LimitationCode.TORQUE_ABSURD: (
         "A torque of {torque_nm:.3g} N·m would wind the reducer up by {wind_up_deg:.0f}°: check the effort's unit, "
         "dynamics.inertia and dynamics.natural_frequency"
     ),
     LimitationCode.TEETH_CONTRADICTED: (
-        "Check the tooth numbers: lines stand at {lines} cycles per output revolution, and {other} teeth explain them "
+        "Check the tooth numbers: lines are at {lines} cycles per output revolution, and {other} teeth explain them "
         f"far better than {_CORRECT_TEETH}"
     ),
     LimitationCode.TEETH_CONTRADICTED_VAGUELY: (
-        "Check the tooth numbers: {other} teeth, or numbers near by, explain the vibration far better than "
+        "Check the tooth numbers: {other} teeth, or numbers close to these, explain the vibration far better than "
         f"{_CORRECT_TEETH}"
     ),
     LimitationCode.VALUE_ON_BOUND: (
@@ -57,11 +57,11 @@ SENTENCES: Mapping[LimitationCode, str] = {
     ),
     LimitationCode.VELOCITY_ZERO: (
         "The velocities in joint_states are zero while the positions move by {moved_deg:.1f}°: have the driver publish "
-        "velocities, or leave the field empty so that they are taken from the positions"
+        "velocities, or leave the field empty so that they are derived from the positions"
     ),
     LimitationCode.POSITION_STILL: (
-        "The positions in joint_states stand still while the velocities reach {velocity_deg_s:.3g}°/s: check what the "
-        "driver publishes"
+        "The positions in joint_states do not change while the velocities reach {velocity_deg_s:.3g}°/s: check what "
+        "the driver publishes"
     ),
     LimitationCode.MOTION_INCONSISTENT: (
         "Positions and velocities in joint_states contradict each other: they differ by {difference_percent:.0f} % of "

@@ -79,8 +79,8 @@ def describe_doubtful_limit(evidence: Identification, limit: float, worst: tuple
     index, std = worst
     factor = (std / max(abs(index - limit), 0.1 * limit)) ** 2
     return _with_doubts(
-        f"The larger index, {_with_std(index, std)}, lies about the limit of {_percent(limit)}; "
-        f"about {max(2, math.ceil(4.0 * factor))} times the present motion would tell",
+        f"The larger index, {_with_std(index, std)}, is close to the limit of {_percent(limit)}; "
+        f"about {max(2, math.ceil(4.0 * factor))} times as much motion would decide",
         evidence,
     )
 
@@ -90,6 +90,6 @@ def describe_doubtful_name(evidence: Identification, odds: Probabilities) -> str
     shares = f"circular spline {odds.circular_spline:.0%}, flexspline {odds.flexspline:.0%}, both {odds.both:.0%}"
     return _with_doubts(
         f"A stiffness defect shows ({_indexes(evidence)}) but not in which spline (probabilities: {shares}); "
-        "more output travel, or another speed, would tell",
+        "more output travel, or another speed, would decide",
         evidence,
     )

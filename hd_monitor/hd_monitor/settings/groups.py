@@ -20,7 +20,7 @@ class InputSettings:
     source: str = choice(
         "block",
         INPUT_SOURCES,
-        "the vibration signal; joint_effort and joint_velocity need no sensor but joint_states",
+        "the vibration signal; joint_effort and joint_velocity need joint_states only",
     )
     axis: str = choice("y", AXES, "axis of an IMU's linear acceleration that points along the motion (tangential)")
     sensor_radius: float = number(
@@ -153,7 +153,7 @@ class DiagnosisSettings:
         0.1, "", 0.0, 0.9, "part of a limit by which an index must fall below it before the status improves"
     )
     confirm_count: int = number(2, "", 1, 100, "verdicts (N) that must agree before the status changes")
-    confirm_window: int = number(3, "", 1, 100, "number of last verdicts (M) looked at for that")
+    confirm_window: int = number(3, "", 1, 100, "number of recent verdicts (M) considered for that")
     latch: bool = plain(False, "keep the worst status until the latch is reset")
 
     def __post_init__(self) -> None:
@@ -175,7 +175,7 @@ PARAMETERS = (
         "reducer.",
         flexspline_teeth=number(160, "", 1, 10_000, "teeth of the flexspline, z1"),
         circular_spline_teeth=number(162, "", 1, 10_000, "teeth of the circular spline, z2 (usually z1 + 2)"),
-        mount=choice("circular_spline_fixed", Mount, "the spline that stands still"),
+        mount=choice("circular_spline_fixed", Mount, "the stationary spline"),
         serial=plain("", "serial number of the reducer, shown as hardware_id"),
     ),
     *table(

@@ -22,7 +22,7 @@ def doubts_of_result(index: LinePair, reducer: Reducer, *, one_speed: float, too
         Part of the motion that was too fast for the rate of the joint states.
     """
     doubts = []
-    # The line of the spline that stands still has exactly the order 2 of the wave generator.
+    # The line of the stationary spline has exactly the order 2 of the wave generator.
     at_order_two = index.circular_spline if reducer.mount is Mount.CIRCULAR_SPLINE_FIXED else index.flexspline
     if at_order_two == max(index):
         doubts.append(doubt(LimitationCode.MOTOR_SHARES_LINE))

@@ -131,7 +131,7 @@ def test_the_motors_orders_count_for_no_other_pair():
 
 def test_both_lines_contradict_the_teeth_and_one_does_not_at_one_speed():
     doubtful = look(watching({200: 1.0, 202: 0.3}))
-    assert said(doubtful).startswith("Check the tooth numbers: lines stand at 200, 202 cycles per output revolution")
+    assert said(doubtful).startswith("Check the tooth numbers: lines are at 200, 202 cycles per output revolution")
     assert "200/202 teeth explain them far better than the 160/162 given" in said(doubtful)
     assert look(watching({200: 1.0})).doubt is None
     assert look(watching({200: 1.0, 600: 0.3})).doubt is None
@@ -197,7 +197,7 @@ def test_where_the_travel_does_not_separate_lines_a_trial_decides_between_neighb
     doubtful = look(blurred, one_speed=False, trial=trial)
     ((first, *rest),) = tried
     assert all(0 < abs(teeth - 160) <= 4 for teeth in (first, *rest))
-    assert said(doubtful).startswith(f"Check the tooth numbers: {first}/{first + 2} teeth, or numbers near by")
+    assert said(doubtful).startswith(f"Check the tooth numbers: {first}/{first + 2} teeth, or numbers close to these")
     assert look(blurred, one_speed=False, trial=lambda given, others: None).doubt is None
     assert look(blurred, trial=no_trial).doubt is None
 
