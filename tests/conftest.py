@@ -59,7 +59,7 @@ def pytest_configure(config: pytest.Config) -> None:
     os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
     os.environ["ROS_PYTHON_CHECK_FIELDS"] = "1"
     os.environ.setdefault("ROS_LOG_DIR", str(Path(tempfile.gettempdir()) / "hd_monitor-test-logs"))
-    # A shell lets its background jobs ignore Ctrl+C, and they hand that down: tests that send it would wait in vain.
+    # A shell lets its background jobs ignore Ctrl+C, and they hand that down: tests that send it would wait forever.
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
@@ -99,7 +99,7 @@ class Peer:
         deadline = time.monotonic() + PATIENCE
         while not condition():
             if time.monotonic() > deadline:
-                pytest.fail(f"waited {PATIENCE:g} s in vain for {what}")
+                pytest.fail(f"waited {PATIENCE:g} s for {what}")
             self.executor.spin_once(timeout_sec=0.05)
 
     def collect(self, message_type: Any, topic: str, *, depth: int = 10_000, match: bool = True) -> list[Any]:

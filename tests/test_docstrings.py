@@ -22,5 +22,5 @@ def modules_with_examples() -> Iterator[str]:
 @pytest.mark.parametrize("module", modules_with_examples())
 def test_examples_do_what_they_show(module: str) -> None:
     result = doctest.testmod(importlib.import_module(module))
-    assert result.attempted > 0, "the examples stand where doctest does not look"
+    assert result.attempted > 0, "the examples are where doctest does not look"
     assert result.failed == 0, "see the captured output"

@@ -29,7 +29,7 @@ class Sink(Protocol):
         """Take a block of samples of θ'' [rad/s²]."""
 
     def reject(self, reason: str) -> None:
-        """Count a message that says nothing, and remember why."""
+        """Count an unusable message, and remember why."""
 
 
 class Inputs:

@@ -1,4 +1,4 @@
-"""What a monitor says at one time: the verdict and everything it rests on."""
+"""What a monitor says at one time: the verdict and everything behind it."""
 
 import math
 from dataclasses import dataclass
@@ -23,7 +23,7 @@ class Assessment:
     Attributes
     ----------
     stamp : int
-        The time it speaks of [ns], on the message stamps' clock: a whole multiple of ``analysis.period``.
+        The time to which it refers [ns], on the message stamps' clock: a whole multiple of ``analysis.period``.
     settings : JointSettings
         In force at that time.
     verdict : Verdict

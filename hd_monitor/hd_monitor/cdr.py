@@ -3,7 +3,7 @@
 Messages of one topic nearly always have the same layout: the same frame name, the same joints, the same block length.
 So one message is parsed as a template, and all others of its length whose layout bytes agree with it are read by
 numpy at once; whatever differs becomes the next template. A message that cannot be read becomes a fault and does not
-spoil the batch.
+affect the batch.
 """
 
 from collections.abc import Callable, Sequence

@@ -24,7 +24,7 @@ BLOCK_LABEL = "torsional_acceleration"
 BLOCK_OFFSET = 4
 """Values before the first sample: seconds, nanoseconds, sample period, sequence number."""
 
-_TOO_MUCH = (2.0**33, 1e9, 2.0**63)  # seconds, nanoseconds and sequence number: from here on damaged data
+_TOO_MUCH = (2.0**33, 1e9, 2.0**63)  # seconds, nanoseconds and sequence number: values from here on are damaged data
 
 MAX_ZOOM_BINS = 50
 """Viewers drop arrays of more than 100 values; a bin takes two."""

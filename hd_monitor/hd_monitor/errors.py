@@ -6,7 +6,7 @@ class HdMonitorError(ValueError):
 
 
 class GeometryError(HdMonitorError):
-    """The tooth numbers or the mount describe no harmonic drive that could turn."""
+    """The tooth numbers or the mount do not describe a harmonic drive that can turn."""
 
 
 class ParameterError(HdMonitorError):
@@ -14,4 +14,4 @@ class ParameterError(HdMonitorError):
 
 
 class LayoutError(HdMonitorError):
-    """A message's arrays do not have the layout that the topic's contract asks for."""
+    """A message's arrays do not have the layout that the topic's contract requires."""

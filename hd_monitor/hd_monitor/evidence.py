@@ -17,17 +17,17 @@ from .orders.rms_curve import RmsAccumulator, SpeedBin
 from .orders.steady import SteadySegment
 from .settings import JointSettings
 
-_SLOW_DEGREE = 5  # of the polynomial that takes gravity and rigid motion off a second of an IMU's signal
+_SLOW_DEGREE = 5  # of the polynomial that removes gravity and rigid motion from a second of an IMU's signal
 
 
 class Evidence:
-    """Everything that one joint's periods have told.
+    """All evidence from one joint's periods.
 
     Parameters
     ----------
     settings : JointSettings
     identifier : Identifier or SensorlessIdentifier, optional
-        One that goes on with what it knows.
+        An identifier to continue with, with its evidence.
     """
 
     def __init__(self, settings: JointSettings, identifier: Identifier | SensorlessIdentifier | None = None) -> None:
@@ -109,7 +109,7 @@ class Evidence:
         return math.sqrt(power / squares.size) if squares.size else math.nan
 
     def _tangential(self, acceleration: FloatArray) -> FloatArray:
-        """Vibration at the sensor's radius [m/s²]; gravity and the arm's own motion taken off an IMU's signal."""
+        """Vibration at the sensor's radius [m/s²]; gravity and the arm's own motion removed from an IMU's signal."""
         values = self._radius * acceleration
         known = np.isfinite(values)
         if not self._gravity or int(known.sum()) < 2 * _SLOW_DEGREE:

@@ -29,7 +29,7 @@ class Monitor:
     ----------
     settings : JointSettings
     identifier : Identifier or SensorlessIdentifier, optional
-        One that goes on with what it knows, from an earlier recording of the same joint say.
+        An identifier to continue with, for example from an earlier recording of the same joint.
 
     Attributes
     ----------
@@ -119,7 +119,7 @@ class Monitor:
         self._judge.reset_latch()
 
     def reset(self) -> None:
-        """Forget all evidence, after the reducer was exchanged say; counters of the input stay."""
+        """Forget all evidence, for example after the reducer was replaced; the input counters are kept."""
         self._judge = Judge(self.settings)
         self._recorder.cut()
         self._evidence = Evidence(self.settings)

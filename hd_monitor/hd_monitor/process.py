@@ -7,7 +7,7 @@ _KEPT = 8_000_000  # bytes; the arrays of a stretch have up to a few millions
 
 
 def set_up_process() -> None:
-    """Keep linear algebra on one thread, and freed memory at hand; call it before numpy is imported.
+    """Keep linear algebra on one thread, and freed memory mapped; call it before numpy is imported.
 
     Matrices of a few dozen columns gain nothing by a second thread, and on a processor that has other work, as a
     robot's does, the threads wait for each other: a replay then takes three times as long. One thread also makes the
@@ -16,7 +16,7 @@ def set_up_process() -> None:
     ``tests/benchmarks/replay_speed.py``.
 
     The C library of Linux gives back to the system what an array of more than 128 kB occupied, and the next array has
-    its pages mapped and cleared anew. It stops doing so for sizes of which one has been freed before.
+    its pages mapped and cleared again. It stops doing so for sizes of which one has been freed before.
     """
     os.environ.setdefault(_THREADS, "1")
     bytes(_KEPT)  # freed at once, and never touched

@@ -46,7 +46,7 @@ def without(target: object, name: str, new: object) -> Patch:
 
 
 def fit_only(self: Estimator, state: object, fit: Fit) -> tuple[object, Fit]:
-    """Stand for a question that is not asked."""
+    """Replace a check that is switched off."""
     return state, fit
 
 
@@ -80,10 +80,10 @@ MECHANISMS: dict[str, tuple[str, Patch]] = {
         without(estimator, "turn_sensor", lambda c, s, f: (s, f)),
     ),
     "starts for what was given": (
-        "natural frequency and delay have starts of their own",
+        "natural frequency and delay have their own starts",
         without(search, "other_starts", lambda *a, **k: []),
     ),
-    "starts for the load": ("the load's phase has starts of its own", without(multistart, "START_LOADS", ())),
+    "starts for the load": ("the load's phase has its own starts", without(multistart, "START_LOADS", ())),
     "score tests": (
         "what was given is estimated where the data contradict it",
         without(Estimator, "_question", fit_only),
@@ -135,7 +135,7 @@ class Outcome:
 
 
 def compare(cases: Sequence[tuple[Case, list[Record]]], patch: Patch) -> tuple[Outcome, Outcome]:
-    """Run the whole estimator and one without a mechanism in turn, so that the machine's pace hits both alike."""
+    """Run the whole estimator and one without a mechanism in turn, so that the machine's pace affects both equally."""
     whole, without_it = Outcome(), Outcome()
     for case, records in cases:
         whole.add(case, records)

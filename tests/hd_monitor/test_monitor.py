@@ -29,7 +29,7 @@ def test_names_the_component(component: Component) -> None:
 
 def test_a_defect_that_appears_at_once_is_noticed_at_the_next_look() -> None:
     """By then the identifier knows the sound reducer so well that it looks at a second a minute."""
-    turns = 48.0  # s; whole ones, so that the angle goes on
+    turns = 48.0  # s; whole ones, so that the angle is continuous
     sound, worn = Recording(Component.NONE, seconds=turns), Recording(Component.FLEXSPLINE, seconds=160.0)
     monitor = run(sound)
     assert latest(monitor).verdict.component is Component.NONE

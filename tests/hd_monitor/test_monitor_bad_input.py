@@ -1,4 +1,4 @@
-"""The monitor is calm about every kind of bad input: counted, survived, and named where it forbids a verdict."""
+"""Every kind of bad input is counted and tolerated, and named where it prevents a verdict."""
 
 import numpy as np
 import pytest
@@ -140,7 +140,7 @@ def test_rejected_messages_show(recording: Recording) -> None:
     assert "2 dimensions" in monitor.silence(0).quality.last_fault
 
 
-def test_efforts_of_zero_are_no_measurement(recording: Recording) -> None:
+def test_efforts_of_zero_do_not_count_as_measured(recording: Recording) -> None:
     monitor = Monitor(SETTINGS)
     monitor.add(Quantity.MOTION, recording.joint_stamps, recording.position, recording.velocity, 0.0 * recording.effort)
     for block in recording.blocks():

@@ -97,7 +97,7 @@ def test_short_holes_are_bridged(recording: Recording, torque: Torque, value: fl
     [(None, FaultCode.INPUT_LOST, "No torque signal"), (np.nan, FaultCode.INPUT_INVALID, "not finite")],
     ids=["lost", "not finite"],
 )
-def test_a_sensor_that_fails_is_named_and_its_return_goes_on_with_the_evidence(
+def test_a_failed_sensor_is_named_and_its_return_continues_with_the_evidence(
     recording: Recording, torque: Torque, value: float | None, code: FaultCode, words: str
 ) -> None:
     monitor = Monitor(SETTINGS)
@@ -120,7 +120,7 @@ def test_a_sensor_that_never_comes_is_missed(recording: Recording) -> None:
     assert "joint states" not in said[-1].verdict.reason
 
 
-def test_zeros_are_no_measurement(recording: Recording, torque: Torque) -> None:
+def test_zeros_do_not_count_as_measured(recording: Recording, torque: Torque) -> None:
     monitor = Monitor(SETTINGS)
     feed(monitor, recording, (torque[0], 0.0 * torque[1]))
     said = latest(monitor)

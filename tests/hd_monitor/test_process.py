@@ -1,4 +1,4 @@
-"""Every process of ours keeps linear algebra on one thread, unless told otherwise, and freed memory at hand."""
+"""Every process of ours keeps linear algebra on one thread, unless told otherwise, and freed memory mapped."""
 
 import os
 import platform
@@ -27,7 +27,7 @@ def test_one_thread_unless_the_environment_says_otherwise(environment: dict[str,
 
 @pytest.mark.parametrize("module", ["hd_monitor.cli.main", "hd_monitor.ros.__main__", "hd_sim_node.__main__"])
 def test_an_executable_says_so_before_numpy_comes(module: str) -> None:
-    """Numpy asks for the number when it is imported: later it would be too late."""
+    """Numpy reads the number at import: later is too late."""
     script = f"""
 import os, sys
 import {module} as executable

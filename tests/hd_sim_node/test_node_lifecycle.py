@@ -35,7 +35,7 @@ def test_can_start_unconfigured_and_follows_the_lifecycle(peer, start_module, me
     assert change_state(peer, NODE, "configure")
     assert change_state(peer, NODE, "activate")
     count = len(blocks)
-    peer.until(lambda: len(blocks) > count, "blocks of the rig set up anew")
+    peer.until(lambda: len(blocks) > count, "blocks of the reconfigured rig")
     assert blocks_of(blocks[count:])[0].sequence == 0
 
 

@@ -72,7 +72,7 @@ def test_fixed_holds_one_speed_without_end():
     assert programme.angle(600.0) == pytest.approx(-850.0 * RPM * 600.0)
 
 
-def test_fixed_may_stand_still():
+def test_fixed_speed_may_be_zero():
     assert build("fixed", speed=0.0).angle(100.0) == 0.0
 
 

@@ -79,7 +79,7 @@ def test_ends_with_the_programme_in_whole_blocks():
     assert simulation.advance() is None
 
 
-def test_a_programme_without_end_goes_on():
+def test_a_programme_without_end_continues():
     simulation = simulate(duration=0.0)
     for _ in range(20):
         assert simulation.advance() is not None

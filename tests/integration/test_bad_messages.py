@@ -83,7 +83,7 @@ def test_joint_states_of_nan_and_of_unequal_lengths(listening: Bench, feeder: Fe
     assert_recovers(listening, feeder)
 
 
-def test_stamps_that_stand_still(listening: Bench, feeder: Feeder) -> None:
+def test_stamps_that_do_not_advance(listening: Bench, feeder: Feeder) -> None:
     block = feeder.block()
 
     def reported() -> bool:

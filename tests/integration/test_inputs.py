@@ -80,7 +80,7 @@ def test_output_counting_backwards(bench: Bench) -> None:
 
 def test_joint_states_alone(bench: Bench) -> None:
     bench.monitor("input.source:=joint_effort", "input.expected_rate:=5000.0")
-    words = [word for word in QUICK if not word.startswith("wait_for")]  # for the vibration it would wait in vain
+    words = [word for word in QUICK if not word.startswith("wait_for")]  # it would wait forever for the vibration
     bench.rig(
         "defect:=flexspline", "publish:=none", "joint_states.effort:=reaction", "joint_states.rate:=500.0", *words
     )

@@ -19,7 +19,7 @@ def trigger(peer: Any, service: str) -> Any:
 
 
 def feed_until(bench: Bench, feeder: Feeder, samples: int) -> None:
-    # What comes before both topics are heard has no like on the other one, and the monitor waits for it in vain.
+    # What comes before both topics are heard has no counterpart on the other, for which the monitor would wait.
     bench.until(feeder.matched, "the monitor's subscriptions")
 
     def counted() -> bool:
@@ -34,7 +34,7 @@ def test_comes_up_active(bench: Bench, peer: Any) -> None:
     assert state(peer, NODE) == "active"
 
 
-def test_inactive_is_silent_and_active_goes_on(bench: Bench, peer: Any, feeder: Feeder) -> None:
+def test_inactive_is_silent_and_active_continues(bench: Bench, peer: Any, feeder: Feeder) -> None:
     bench.monitor()
     feed_until(bench, feeder, 1000)
     assert change_state(peer, NODE, "deactivate")

@@ -22,7 +22,7 @@ def test_no_publisher_at_all(bench: Bench) -> None:
     assert status.values["reason"] == status.message
 
 
-def test_statuses_go_on_without_input(bench: Bench) -> None:
+def test_statuses_continue_without_input(bench: Bench) -> None:
     bench.monitor("input.timeout:=0.5")
     bench.until(lambda: len(bench.statuses) >= 4, "a status every second")
 

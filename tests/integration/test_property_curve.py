@@ -84,7 +84,7 @@ def test_figure_16_through_the_nodes_is_the_models_curve_within_2_per_cent(bench
         enough = (dwell(float(SPEEDS[-1])) - 2.0) * RATE  # unfinished seconds are not assessed
         return len(counts()) >= SPEEDS.size and counts()[-1] >= enough
 
-    while not done():  # however slow the machine, as long as it goes on
+    while not done():  # however slow the machine, as long as messages come
         before = sum(counts())
         bench.until(partial(_more, counts, before), f"more of the curve than {counts()}")
     rpm, rms, samples = np.reshape(np.asarray(curves[-1].data), (-1, 3)).T

@@ -7,7 +7,7 @@ intervals, index ± 1.96 standard deviations, hold the truth? Near 0 an interval
 
 *Efficiency*: Table 1 at a constant speed with separable lines, over many noises: the variance of the estimates over
 the Cramér-Rao bound for all that is estimated along (see cramer_rao.py), for each index and for all β of each
-spline, and the variance that the estimator reports over the same bound. Beside the plain ratio stands one with less
+spline, and the variance that the estimator reports over the same bound. The plain ratio is followed by one with less
 chance in it: with the noise known, so is the error of the efficient estimate, whose variance *is* the bound; only
 what the estimate adds to that error has to be measured. Twice the standard error follows every ±.
 """

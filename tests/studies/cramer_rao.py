@@ -30,7 +30,7 @@ START = slice(18, 20)
 
 SIZE = 20
 PRIOR_STD = np.concatenate([np.full(12, 0.3), np.full(4, 2.0), [0.1, 0.5], np.full(2, np.inf)])
-"""What the estimator is told of the unknowns before any data."""
+"""The estimator's prior knowledge of the unknowns."""
 
 _STEPS = np.concatenate([np.full(12, 1e-4), np.full(4, 1e-3), [1e-5, 1e-4], np.full(2, 1e-7)])
 _OVERSAMPLING = 2  # integration steps a sample

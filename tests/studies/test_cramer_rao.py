@@ -46,7 +46,7 @@ def test_the_bound_for_stiffness_alone_is_that_of_the_harmonic_balance():
 
     columns = np.stack([(lines(1e-5 * unit) - lines(-1e-5 * unit)) / 2e-5 for unit in np.eye(12)], axis=1)
     covariance = np.linalg.inv(columns.T @ columns) * 2.0 * calibration.NOISE**2 / samples
-    # two output turns are not quite whole, so the lines are not quite orthogonal, and the start is no steady state
+    # two output turns are not quite whole, so the lines are not quite orthogonal, and the start is not a steady state
     assert bound.covariance[:12, :12].diagonal() == pytest.approx(covariance.diagonal(), rel=0.03)
 
 

@@ -1,4 +1,4 @@
-"""What comes of wrong tooth numbers? Random cases with a vibration sensor, and random joints without, told wrong teeth.
+"""What wrong tooth numbers lead to: random cases with a vibration sensor, and random joints without, given wrong teeth.
 
     python tests/studies/tooth_numbers.py [--cases 24] [--seed 7] [--jobs 2]
 
@@ -36,7 +36,7 @@ from tests.simulated.cases import MOTIONS, random_case, simulate
 from tests.simulated.joints import random_joint, simulate_joint
 
 SHIFTS = (0, -40, -20, -2, 2, 20, 40)
-"""Teeth told less those in the case, with a sensor."""
+"""Teeth given minus those in the case, with a sensor."""
 
 NEIGHBOURS = (0, -4, -3, -2, -1, 1, 2, 3, 4)
 """The same without."""
@@ -100,7 +100,7 @@ for _owner, _name in ((ToothWatch, "after"), (ToothWatch, "look"), (sensorless, 
 
 
 def judge_case(number: int, seed: int, shifts: Sequence[int] = SHIFTS) -> list[Outcome]:
-    """Identify a case with a sensor, told teeth that are off by each of `shifts`."""
+    """Identify a case with a sensor, given teeth that are off by each of `shifts`."""
     case = random_case(np.random.default_rng([seed, number]), motion=MOTIONS[number % len(MOTIONS)])
     records = simulate(case)
     outcomes = []
@@ -120,7 +120,7 @@ def judge_case(number: int, seed: int, shifts: Sequence[int] = SHIFTS) -> list[O
 
 
 def judge_joint(number: int, seed: int, shifts: Sequence[int] = NEIGHBOURS) -> list[Outcome]:
-    """Identify a joint without a sensor, told teeth that are off by each of `shifts`."""
+    """Identify a joint without a sensor, given teeth that are off by each of `shifts`."""
     rng = np.random.default_rng([seed, number])
     lines = LinePair(*rng.permutation([1.0, 0.4]).tolist())
     joint = random_joint(rng, lines, rate=float(rng.choice([100.0, 125.0, 250.0])))

@@ -75,7 +75,7 @@ def _scaled(ratio: float, reduction: float) -> Limitation:
 
 
 def _mistakes(reduction: float) -> dict[str, float]:
-    """Changes of position over those that velocities tell, by the mistake that brings them about."""
+    """Changes of position over those implied by the velocities, by the mistake that causes them."""
     return {
         "velocities of the opposite sign": -1.0,
         "velocities in deg/s": math.radians(1.0),

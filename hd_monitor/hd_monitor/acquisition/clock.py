@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from ..arrays import FloatArray, IntArray
 
-_EVEN = 0.02  # of a period: single differences of stamps as even as this count the missing samples without fail
+_EVEN = 0.02  # of a period: single differences of stamps as even as this count missing samples reliably
 _DISORDERED = 0.2  # of a period: sorted stamps more uneven than this were not sampled in that order
 _SHARP = 0.17  # of a period: stamps nearer to the grid than this show their own place; rounding alone leaves 0.29
 _OUT_OF_PLACE = 0.55  # of a period: a stamp further from its place belongs to another one

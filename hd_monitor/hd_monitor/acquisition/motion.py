@@ -10,7 +10,7 @@ from ..arrays import BoolArray, FloatArray
 from ..interpolation import cubics
 from .clock import recover_clock
 
-_LARGEST_HOLE = 0.25  # s; a joint can change its speed within that in ways that no interpolation knows
+_LARGEST_HOLE = 0.25  # s; within that, a joint's speed can change in ways that interpolation cannot follow
 _HOLE_PERIODS = 5.0
 _ENOUGH_EFFORT = 0.5  # of the messages: torque is slow, so that single missing efforts are bridged
 _FEWEST_TO_EVEN = 16  # messages

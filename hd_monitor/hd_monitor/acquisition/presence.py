@@ -14,12 +14,12 @@ class Loss(NamedTuple):
     silent: bool
     """Whether nothing comes; otherwise messages come, but none can be used."""
     since: int
-    """How long nothing has come, or nothing of use [ns]."""
+    """How long nothing, or nothing usable, has come [ns]."""
 
 
 @dataclass(slots=True)
 class _Heard:
-    """When an input was last heard, and last of use [ns], None while the clock has not begun; whether it ever was."""
+    """When an input was last heard, and last usable [ns], None while the clock has not begun; whether it ever was."""
 
     came: int | None = None
     useful: int | None = None
@@ -27,9 +27,9 @@ class _Heard:
 
 
 class Presence:
-    """Decides which inputs are lost: those of which nothing, or nothing of use, came for a while.
+    """Decides which inputs are lost: those from which nothing, or nothing usable, came for a while.
 
-    The monitor asks it on the clock of the stamps, the node on its own.
+    The monitor uses it with the clock of the stamps, the node with its own.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ class Presence:
 
     @property
     def absent(self) -> tuple[Quantity, ...]:
-        """Inputs of which nothing has come so far."""
+        """Inputs from which nothing has come so far."""
         return tuple(quantity for quantity, heard in self._heard.items() if not heard.ever)
 
     def start(self, now: int | None) -> None:
@@ -59,7 +59,7 @@ class Presence:
             heard.came = heard.useful = now
 
     def note(self, quantity: Quantity, came: int, useful: int | None = None) -> None:
-        """Note when an input came, and when it was of use [ns]; None: it was not."""
+        """Note when an input came, and when it was usable [ns]; None: it was not."""
         if (heard := self._heard.get(quantity)) is not None:
             heard.ever = True
             heard.came = came

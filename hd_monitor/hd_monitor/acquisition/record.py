@@ -19,7 +19,7 @@ class Record:
     period : float
         Sample period [s].
     acceleration : ndarray, shape (samples,)
-        Torsional acceleration θ'' of the output [rad/s²]; NaN where a sample was lost or spoilt.
+        Torsional acceleration θ'' of the output [rad/s²]; NaN where a sample was lost or bad.
     angle : ndarray, shape (samples,)
         Output-side joint angle q [rad], unwrapped; absolute wherever the joint's encoder is.
     speed : ndarray, shape (samples,)

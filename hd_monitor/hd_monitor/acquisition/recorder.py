@@ -31,7 +31,7 @@ _STANDING = 1e-3  # rad of output travel in a period, below which a constant sig
 
 
 class AssembledPeriod(NamedTuple):
-    """What one period's messages give together.
+    """One period's messages combined.
 
     Attributes
     ----------
@@ -40,9 +40,9 @@ class AssembledPeriod(NamedTuple):
     joint_samples : JointSamples
         The joint states of the period as they came.
     vibration : ndarray, shape (N,)
-        All screened vibration samples of the period, those without known motion included; NaN where spoilt.
+        All screened vibration samples of the period, those without known motion included; NaN where bad.
     usable : frozenset of Quantity
-        Inputs of which there was something of use.
+        Inputs with something usable.
     """
 
     records: tuple[Record, ...]
@@ -135,7 +135,7 @@ class Recorder:
         return JointSamples(times=times, angle=rows[:, 0], speed=rows[:, 1], effort=rows[:, 2])
 
     def _measured_torque(self, period: Period) -> int:
-        """Take in a torque sensor's samples, if there is one; return how many are of use."""
+        """Take in a torque sensor's samples, if there is one; return how many are usable."""
         if not self._has_sensor:
             return 0
         stamps, rows = _sorted(period.samples[Quantity.TORQUE])
@@ -202,7 +202,7 @@ class Recorder:
         times = np.asarray(start + period * np.arange(values.size), dtype=np.float64)
         angle, speed, torque = self._track.at(times)
         known = np.isfinite(angle)
-        if self._has_sensor:  # what lies in a hole of its signal has no torque that could be mixed with a measured one
+        if self._has_sensor:  # in a hole of its signal there is no torque that could be mixed with a measured one
             torque = self._torque_track.at(times)
             known &= np.isfinite(torque)
         spans = [(0, values.size)] if known.all() else runs_of(known)

@@ -85,7 +85,7 @@ def _curvature(values: FloatArray) -> FloatArray:
 
 
 def _spikes(values: FloatArray) -> Places:
-    """Indexes of samples, up to `_LONGEST_SPIKE` in a row, that stick out of their neighbours."""
+    """Indexes of samples, up to `_LONGEST_SPIKE` in a row, that stick out from their neighbours."""
     curvature = _curvature(values)
     known = curvature
     largest = float(curvature.max(initial=0.0))
@@ -136,7 +136,7 @@ def _spike_near(values: FloatArray, place: int, limit: float) -> Places:
     part = (np.arange(window.size) - first + 1) / (count + 1.0)
     chosen = (part > 0.0) & (part < 1.0) & np.isfinite(window)
     bridged = np.where(chosen, left + part * (right - left), window)
-    # Squares, so that another spike nearby counts alike in every trial; a longer spike must be worth its length
+    # Squares, so that another spike nearby counts alike in every trial; a longer spike must justify its length
     gain = (curvature**2 - np.nan_to_num(_curvature(bridged)) ** 2).sum(axis=1) / np.sqrt(count[:, 0])
     gain[np.isnan(left[:, 0])] = 0.0
     best = int(np.argmax(gain))

@@ -17,13 +17,13 @@ LATENESS = 50_000_000
 """A sample may come this long [ns] after a later one and is still sorted in."""
 
 CLOCK_JUMP = 1_000_000_000
-"""A stamp further back than this [ns] is astray or a clock that was set back, not a late message."""
+"""A stamp further back than this [ns] is an outlier or a clock that was set back, not a late message."""
 
 LEAP = 10_000_000_000
-"""A stamp further ahead than this [ns] is astray or the end of a long pause."""
+"""A stamp further ahead than this [ns] is an outlier or the end of a long pause."""
 
 TRUSTED = 1_000_000_000
-"""Stamps elsewhere are believed once they have gone on for this long [ns]; until then they may be astray."""
+"""Stamps elsewhere are accepted once they have continued for this long [ns]; until then they may be outliers."""
 
 
 class Samples(NamedTuple):
@@ -103,10 +103,10 @@ class StampedBuffer:
             self._add_piece(Samples(stamps[start:stop], values[start:stop]))
 
     def _add_piece(self, piece: Samples) -> None:
-        """Append samples without a leap among them: one stray stamp must not throw the clock over."""
+        """Append samples without a leap among them: one stray stamp must not reset the clock."""
         epoch, first = self._epochs[-1], int(piece.stamps[0])
         if epoch.newest is None or -CLOCK_JUMP <= first - epoch.newest <= LEAP:
-            if self._suspects:  # the clock is back where it was: what leapt was astray
+            if self._suspects:  # the clock is back where it was: the leap was an outlier
                 self.jumps += 1
                 self.late += sum(suspect.stamps.size for suspect in self._suspects)
                 self._suspects.clear()
@@ -174,7 +174,7 @@ class StampedBuffer:
         return 0.0 if newest is None or oldest is None else (newest - oldest) * 1e-9
 
     def pass_jump(self) -> None:
-        """Go on to what came after the clock was set back."""
+        """Continue with what came after the clock was set back."""
         if self.jumped:
             self._epochs.popleft()
 

@@ -97,7 +97,7 @@ class Timeline:
     def _next_start(self) -> int | None:
         """Begin at the earliest sample, once all inputs have some or one has waited for the others long enough.
 
-        Later, go on where the last period ended, or jump over a time in which no input has anything.
+        Later, continue where the last period ended, or jump over a time in which no input has anything.
         """
         oldest, newest = self._oldest(), self._newest()
         if oldest is None or newest is None:
@@ -120,7 +120,7 @@ class Timeline:
         return not waiting or newest >= end + self._timeout
 
     def _pass_jump(self) -> bool:
-        """Go on to the new time base once all inputs have jumped, or one has left the others waiting long enough."""
+        """Switch to the new time base once all inputs have jumped, or one has left the others waiting long enough."""
         jumped = [buffer for buffer in self._inputs if buffer.jumped]
         if not jumped:
             return False

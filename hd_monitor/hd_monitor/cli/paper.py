@@ -1,4 +1,4 @@
-"""``hd-monitor paper``: the source paper reproduced, claim by claim, or its figures for a reducer of one's own."""
+"""``hd-monitor paper``: the source paper reproduced, claim by claim, or its figures for your own reducer."""
 
 import argparse
 import shlex

@@ -1,4 +1,4 @@
-"""What is said where input is lost, of no use or not enough: no part is named then."""
+"""Verdicts where input is lost, unusable or not enough: no part is named."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
@@ -11,7 +11,7 @@ from ..sources import Quantity
 from .verdict import Component, FaultCode, Level, Verdict
 
 Explain = Callable[[Quantity], str]
-"""Says of an input why nothing comes, as far as the ROS graph tells."""
+"""Explains why an input is silent, as far as the ROS graph shows it."""
 
 _WORDS = {
     Quantity.VIBRATION: "vibration signal",
@@ -29,13 +29,13 @@ def _listed(quantities: Iterable[Quantity]) -> str:
 
 
 def nothing_received(absent: Sequence[Quantity], timeout: float) -> Verdict:
-    """Say that nothing came for `timeout` [s]; `absent` are the inputs that never came at all."""
+    """Say that nothing came for `timeout` [s]; `absent` lists the inputs never received."""
     reason = f"No {_listed(absent)} received yet" if absent else f"No new data for {timeout:g} s"
     return _error(f"{reason}: check that the publishers run and the topics match", FaultCode.INPUT_LOST)
 
 
 def lost(losses: Sequence[Loss], fault: str, timeout: float) -> Verdict:
-    """Say that inputs have not come, or not been of use because of `fault`, for `timeout` [s] while others have."""
+    """Say that inputs have been silent, or unusable because of `fault`, for `timeout` [s] while others have not."""
     if silent := [loss.quantity for loss in losses if loss.silent]:
         return _error(
             f"No {_listed(silent)} for {timeout:g} s or more while other input continues: "

@@ -25,7 +25,7 @@ FAULT_CODES = {
     Component.UNDETERMINED: FaultCode.UNDETERMINED,
 }
 
-_SHARP = 0.1  # an index whose standard deviation is below this part of the limit is compared with it as it stands
+_SHARP = 0.1  # an index whose standard deviation is below this part of the limit is compared with it directly
 
 
 class _Case(NamedTuple):
@@ -46,7 +46,7 @@ class Judge:
     Parameters
     ----------
     settings : JointSettings
-        Of them ``diagnosis.*`` and the mount count.
+        Only ``diagnosis.*`` and the mount are used.
 
     Notes
     -----
@@ -94,7 +94,7 @@ class Judge:
             shown = now
         elif shown is None:
             shown = self._undetermined(f"{now.reason} (to be confirmed: {count} of {self._limits.confirm_count})")
-        else:  # held until the new verdict is confirmed; the sentence speaks of the evidence of now all the same
+        else:  # held until the new verdict is confirmed; the sentence still describes the present evidence
             held = replace(
                 shown, reason=f"{now.reason} (held: {count} of {self._limits.confirm_count} verdicts say so)"
             )
@@ -103,7 +103,7 @@ class Judge:
         return self._latch(shown)
 
     def _of_now(self, evidence: Identification | None, missing: str) -> Verdict:
-        """Assess the evidence; it stays the same from one period to the next more often than not."""
+        """Assess the evidence; it often stays the same from one period to the next."""
         if evidence is None:
             return self._undetermined(missing)
         shown = self._shown

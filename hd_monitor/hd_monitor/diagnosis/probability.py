@@ -48,7 +48,7 @@ def component_probabilities(evidence: Identification, limit: float, both_ratio: 
     return _share(evidence.index, evidence.index_std, evidence.index_correlation, limit, both_ratio)
 
 
-@functools.lru_cache(maxsize=16)  # evidence stays the same from one period to the next more often than not
+@functools.lru_cache(maxsize=16)  # the evidence often stays the same from one period to the next
 def _share(index: LinePair, index_std: LinePair, correlation: float, limit: float, both_ratio: float) -> Probabilities:
     """Share of the indexes' joint distribution (Gaussian, cut at 0) that calls for each component.
 

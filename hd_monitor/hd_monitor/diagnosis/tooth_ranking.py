@@ -1,4 +1,4 @@
-"""What a ranking of tooth pairs is worth, in words for a technician."""
+"""Conclusion of a ranking of tooth pairs, in words for a technician."""
 
 import math
 

@@ -122,7 +122,7 @@ class Identification:
     def critical_speed(self) -> float:
         """Lowest wave-generator speed [rpm] at which `model` is parametrically unstable; inf if none, NaN without it.
 
-        Worked out when asked for: it takes as long as the identification of some seconds of motion.
+        Computed on access: it takes as long as the identification of some seconds of motion.
         """
         return math.nan if self.model is None else _critical_speed(self.model)
 

@@ -65,7 +65,7 @@ class PitchErrors:
     def interference(self, lobe_angle: npt.ArrayLike) -> FloatArray:
         """Extra tooth deflection [m] with a lobe of the wave generator at `lobe_angle` [rad] on this spline, any shape.
 
-        The two lobes stand half a revolution apart, so the teeth of one zone are pressed against those of the other by
+        The two lobes are half a revolution apart, so the teeth of one zone are pressed against those of the other by
         the difference of the two zones' errors; which of them gives way does not matter, so it is never negative. It
         therefore varies twice a revolution (paper, case 1). Each zone averages over the teeth that mesh in it.
         """

@@ -75,7 +75,7 @@ class Bag:
     def messages(self, topics: Collection[str]) -> Iterator[RawMessage]:
         """Yield the messages of `topics` by the time of their recording.
 
-        Where the recording turns out to be damaged, a note is made and what is still whole goes on coming.
+        If the recording turns out to be damaged, a note is made and the intact messages are still yielded.
         """
         names = list(dict.fromkeys(topics))
         for batch in self._batches(names):

@@ -20,9 +20,9 @@ from ..reducer import WAVE_GENERATOR_LOBES
 from ..settings import JointSettings
 
 LONGEST = 600.0
-"""Motion [s] that the check looks at: more would tell little more, and memory stays flat."""
+"""Motion [s] that the check uses: more would add little, and memory stays flat."""
 
-_APART = 10.0  # s between recordings laid end to end: no stroke goes on from one to the next
+_APART = 10.0  # s between recordings laid end to end: no stroke continues from one to the next
 
 
 def rank_tooth_pairs(

@@ -1,4 +1,4 @@
-"""Orthonormal directions: what some signals have in common is taken off others by them."""
+"""Orthonormal directions: used to remove from signals what they share with others."""
 
 from typing import Any
 

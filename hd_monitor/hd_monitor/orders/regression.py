@@ -91,7 +91,7 @@ class LineFit:
         Samples used.
     reference_orders : ndarray, shape (references,)
     found, left : ndarray, shape (references,)
-        At each of them, once the fit is taken off: squared product with the signal, and with itself.
+        At each of them, after the fit is subtracted: squared product with the signal, and with itself.
     """
 
     phasors: ComplexArray

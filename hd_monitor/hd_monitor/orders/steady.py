@@ -26,7 +26,7 @@ class SteadySegment:
         self._parts: deque[Record] = deque()
 
     def add(self, record: Record) -> None:
-        """Append a record, or start anew with it where it does not continue or the speed has changed."""
+        """Append a record, or start again with it where it does not continue or the speed has changed."""
         first, last = float(record.speed.min()), float(record.speed.max())
         reference = float(self._parts[0].speed.mean()) if self._parts else 0.5 * (first + last)
         if not self._parts or not record.continues or not _near(first, last, reference):

@@ -95,7 +95,7 @@ class Zoom:
         self._transform = ZoomFFT(count, [first, last], m=bins, fs=1.0 / period, endpoint=True)
 
     def __call__(self, samples: npt.ArrayLike) -> FloatArray:
-        """Peak amplitudes, shape (bins,), of the samples, shape (count,); their mean is taken off.
+        """Peak amplitudes, shape (bins,), of the samples, shape (count,); their mean is removed.
 
         Missing samples (NaN) get no weight, and the amplitudes are corrected for it.
         """
@@ -122,7 +122,7 @@ def zoom_spectrum(
 ) -> ZoomSpectrum:
     """Amplitude spectrum around a line pair, its two combination lines included.
 
-    The bins stand at the lines and at whole fractions of their separation beside them, so that the height of each
+    The bins are at the lines and at whole fractions of their separation beside them, so that the height of each
     line, and of ``2 f_cs - f_fs`` and ``2 f_fs - f_cs`` where load modulation shows, is read without scalloping.
 
     Parameters

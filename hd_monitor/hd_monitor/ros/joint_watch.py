@@ -1,4 +1,4 @@
-"""One joint as the node sees it: its monitor, what it was last told, and what became of that. Knows no rclpy."""
+"""One joint as the node sees it: its monitor, its last input, and the result. Knows no rclpy."""
 
 import traceback
 from collections.abc import Mapping, Sequence
@@ -119,7 +119,7 @@ class JointWatch:
         """Zoom spectrum of the present assessment, where there is one to show."""
         try:
             return self.present.zoom
-        except HdMonitorError:  # the stretch holds no number, say: no picture, but no reason to start afresh
+        except HdMonitorError:  # the stretch holds no number, say: no picture, but no reason to restart
             return None
         except Exception as error:
             self._fail(error, self.present.stamp)
@@ -172,7 +172,7 @@ class JointWatch:
         return verdict.level, verdict.component, verdict.fault_code
 
     def _fail(self, error: Exception, now: int) -> None:
-        """Start this joint afresh after an error of the core, and say so: the other joints must not suffer."""
+        """Restart this joint after an error of the core, and say so: the other joints must not suffer."""
         self.errors += 1
         self.last_error = traceback.format_exc()
         self._start()

@@ -26,7 +26,7 @@ def test_cubic_motion_is_exact(coefficients: tuple[float, ...], chunk: int) -> N
     assert np.allclose(torque, 7.0)
 
 
-def test_a_joint_that_wraps_goes_on_turning() -> None:
+def test_a_wrapping_joint_is_unwrapped() -> None:
     times = np.arange(0.0, 10.0, 0.01)
     true = 2.0 * times
     wrapped = (true + np.pi) % (2 * np.pi) - np.pi
@@ -64,7 +64,7 @@ def moving(times: np.ndarray) -> np.ndarray:
 
 
 @given(seed=st.integers(0, 2**32), jitter=st.floats(1e-4, 1.5e-3))
-def test_jitter_of_stamps_is_taken_off(seed: int, jitter: float) -> None:
+def test_jitter_of_stamps_is_removed(seed: int, jitter: float) -> None:
     sampled = np.arange(100) * 0.01
     stamped = np.sort(sampled + np.random.default_rng(seed).normal(0.0, jitter, 100))
     evened = even_stamps(stamped, moving(sampled))

@@ -31,7 +31,7 @@ def test_an_input_is_lost_alone_and_comes_back(presence: Presence) -> None:
     assert presence.absent == ()
 
 
-def test_messages_of_no_use_are_not_silence(presence: Presence) -> None:
+def test_unusable_messages_are_not_silence(presence: Presence) -> None:
     presence.note(MOTION, 13 * SECOND, 13 * SECOND)
     presence.note(VIBRATION, 11 * SECOND, 11 * SECOND)
     presence.note(VIBRATION, 13 * SECOND)
@@ -44,7 +44,7 @@ def test_an_input_that_is_not_needed_is_never_lost(presence: Presence) -> None:
     assert TORQUE not in {loss.quantity for loss in presence.losses(100 * SECOND)}
 
 
-def test_a_clock_that_has_not_begun_or_is_set_back_starts_the_silence_anew(presence: Presence) -> None:
+def test_a_clock_that_has_not_begun_or_is_set_back_restarts_the_silence(presence: Presence) -> None:
     presence.start(None)
     assert presence.losses(1000 * SECOND) == []
     assert presence.losses(5 * SECOND) == []

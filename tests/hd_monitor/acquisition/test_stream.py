@@ -20,7 +20,7 @@ def buffer_of(stamps: list[int], chunk: int = 1000) -> StampedBuffer:
 @given(
     steps=st.lists(st.integers(0, 40), min_size=1, max_size=60), chunk=st.integers(1, 60), until=st.integers(0, 2000)
 )
-def test_take_splits_once_and_for_all_however_it_was_fed(steps: list[int], chunk: int, until: int) -> None:
+def test_take_splits_consistently_however_it_was_fed(steps: list[int], chunk: int, until: int) -> None:
     stamps = (np.cumsum(steps) * MS).tolist()
     buffer = buffer_of(stamps, chunk)
     early, late = buffer.take(until * MS), buffer.take(2**62)

@@ -83,7 +83,7 @@ def test_after_a_clock_set_back_the_new_time_base_is_taken() -> None:
     ]
 
 
-def test_one_input_whose_clock_is_set_back_alone_does_not_block_for_ever() -> None:
+def test_one_input_whose_clock_alone_is_set_back_does_not_block_forever() -> None:
     timeline, one, other = timeline_of_two()
     feed(one, 100.0, 102.5)
     feed(other, 100.0, 102.5)

@@ -64,7 +64,7 @@ def holds(interval: dict[str, float], truth: float, widths: float = 2.0) -> bool
 
 
 @pytest.mark.parametrize("error", [0.92, 1.08])
-def test_a_wrong_natural_frequency_is_found_back_with_all_betas(sweep: Path, tmp_path: Path, error: float) -> None:
+def test_a_wrong_natural_frequency_is_corrected_with_all_betas(sweep: Path, tmp_path: Path, error: float) -> None:
     wrong = ["-p", f"dynamics.natural_frequency:={55.0 * error}", "-p", "dynamics.damping_ratio:=0.03"]
     (joint,) = identified(tmp_path, str(sweep), *wrong)["joints"]
     frequency, damping = joint["natural_frequency"], joint["damping_ratio"]
@@ -157,7 +157,7 @@ def test_without_an_accelerometer_each_direction_is_shown(
         assert entry["dominance"]["circular_spline"] > 0.99
     best = joint["teeth"]["ranked"][0]
     assert 200 in (best["flexspline_teeth"], best["circular_spline_teeth"])
-    assert not joint["teeth"]["conclusive"]  # one line is no pair
+    assert not joint["teeth"]["conclusive"]  # one line is not a pair
     out = capsys.readouterr().out
     assert "forward: " in out
     assert "reverse: " in out
@@ -184,7 +184,7 @@ def test_json_to_standard_output_is_nothing_but_json(arm: Path, capsys: pytest.C
         (["{still}", *ARM], "nothing to identify"),
     ],
 )
-def test_what_cannot_be_used_is_said_in_one_line_with_status_2(
+def test_unusable_input_is_reported_in_one_line_with_status_2(
     arm: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], arguments: list[str], words: str
 ) -> None:
     text = tmp_path / "text"

@@ -25,7 +25,7 @@ def test_the_page_has_every_parameter() -> None:
         assert f"| `{parameter.name}` |" in page
 
 
-def test_the_pages_cells_hold_no_bar() -> None:
+def test_table_cells_of_the_page_contain_no_bar() -> None:
     for line in markdown(node_tables()).splitlines():
         if line.startswith("|"):
             assert line.count("|") == 6, line

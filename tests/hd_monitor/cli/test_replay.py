@@ -109,7 +109,7 @@ def test_fail_on_error_lets_a_warning_pass(recording: Path) -> None:
         (["{bag}", "--report", "{text}/report"], "cannot be written"),
     ],
 )
-def test_what_cannot_be_used_is_said_in_one_line_with_status_2(
+def test_unusable_input_is_reported_in_one_line_with_status_2(
     recording: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], arguments: list[str], words: str
 ) -> None:
     text = tmp_path / "text"

@@ -79,7 +79,7 @@ def test_blockers_forbid_a_name() -> None:
     assert "20°" in verdict.reason
 
 
-def test_two_splines_that_cannot_be_told_apart_are_not_named_but_the_defect_is_shown() -> None:
+def test_indistinguishable_splines_are_not_named_but_the_defect_is_shown() -> None:
     verdict = settled(judge_of(), evidence(0.15, 0.12, 0.03, index_correlation=-0.9))
     assert verdict.component is Component.UNDETERMINED
     assert verdict.level is Level.ERROR
@@ -92,7 +92,7 @@ def test_a_vague_index_beside_the_limit_is_not_called_sound() -> None:
     assert verdict.level is Level.WARN
 
 
-def test_doubts_are_told_beside_the_name() -> None:
+def test_doubts_are_reported_with_the_named_part() -> None:
     verdict = settled(
         judge_of(), evidence(0.01, 0.10, limitations=(doubt(LimitationCode.MOTION_STAMPS_LAG, delay_ms=16.5),))
     )

@@ -22,7 +22,7 @@ SPEED = 1.0  # rad/s
 
 
 class Stub:
-    """Stands for an estimator that is as sure as it is told to be."""
+    """Fake estimator with a given certainty."""
 
     def __init__(self, sureness: float) -> None:
         self._sureness = sureness
@@ -95,7 +95,7 @@ def test_what_is_not_looked_at_makes_the_evidence_older() -> None:
     assert estimator.passed == pytest.approx(skipped)
 
 
-def test_a_standing_joint_makes_nothing_older() -> None:
+def test_evidence_does_not_age_while_the_joint_stands() -> None:
     estimator = Stub(1.0)
     identifier = run(estimator, 2)
     for number in range(2, 500):

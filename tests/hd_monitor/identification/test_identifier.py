@@ -84,7 +84,7 @@ def test_a_wrong_natural_frequency_is_noticed(factor, motion):
     }
 
 
-def test_a_value_on_its_bound_is_said_and_not_shown_as_a_measurement():
+def test_a_value_on_its_bound_is_reported_and_not_shown_as_a_measurement():
     truth = case(motion="run_up", speed=1500.0)
     result = identify(simulate(truth), truth.settings(**{"dynamics.natural_frequency": 40.0}))
     assert result.fit_status is FitStatus.ON_BOUND
@@ -174,7 +174,7 @@ def test_line_amplitudes_are_those_of_the_steady_state():
         np.testing.assert_allclose(line.amplitude, pair, rtol=0.01, atol=5e-3 * max(map(max, expected)))
 
 
-def test_too_little_travel_is_said_with_what_is_missing():
+def test_too_little_travel_is_reported_with_what_is_missing():
     truth = case(duration=4.0, speed=150.0)
     result = identify(simulate(truth), truth.settings())
     (reason,) = map(describe_limitation, result.blockers)
@@ -220,7 +220,7 @@ def test_absurd_input_never_raises_and_never_names(spoil):
     assert result is None or result.blockers
 
 
-def test_a_fault_that_comes_later_is_said_beside_what_is_known():
+def test_a_later_fault_is_reported_beside_the_verdict():
     truth = case()
     records = simulate(truth)
     identifier = Identifier(truth.settings())

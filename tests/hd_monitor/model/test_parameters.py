@@ -66,7 +66,7 @@ class TestStiffnessSeries:
     def test_index_is_the_root_sum_square(self):
         assert StiffnessSeries((0.03, -0.04)).index == pytest.approx(0.05)
 
-    def test_an_empty_series_is_no_fluctuation(self):
+    def test_an_empty_series_means_no_fluctuation(self):
         assert StiffnessSeries().index == 0.0
         assert not StiffnessSeries()(ANGLES).any()
 

@@ -79,7 +79,7 @@ def write(
 
 
 def write_unchunked(path: Path, messages: Sequence[Sent], topic: str) -> Path:
-    """Write a file whose messages stand outside chunks."""
+    """Write a file whose messages are outside chunks."""
     head = _record(3, struct.pack("<H", 1) + _string(TYPE) + _string("ros2msg") + _string("string data"))
     head += _record(4, struct.pack("<HH", 1, 1) + _string(topic) + _string("cdr") + struct.pack("<I", 0))
     out = MAGIC + _record(1, _string("ros2") + _string("by hand")) + head

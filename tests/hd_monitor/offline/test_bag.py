@@ -131,7 +131,7 @@ def test_a_folder_of_several_files_is_read_in_their_order(tmp_path: Path) -> Non
     assert times == sorted(times)
 
 
-def test_a_damaged_file_of_a_folder_costs_no_other(tmp_path: Path) -> None:
+def test_a_damaged_file_of_a_folder_does_not_affect_the_others(tmp_path: Path) -> None:
     folder = tmp_path / "splits"
     folder.mkdir()
     events = sorted(rec.small(9.0), key=lambda event: event.time)

@@ -20,7 +20,7 @@ VIBRATION, MOTION = "/torsional_acceleration/block", "/joint_states"
         ((0.0, 3.0), (5.0, 8.0), rf"no usable joint states.*{MOTION} \(300\).*hardly overlap in time"),
     ],
 )
-def test_messages_apart_in_time_are_not_called_missing(
+def test_sparse_messages_are_not_called_missing(
     tmp_path: Path, vibration: tuple[float, float], motion: tuple[float, float], said: str
 ) -> None:
     spans = {VIBRATION: vibration, MOTION: motion}

@@ -107,7 +107,7 @@ def test_an_odd_name_is_found_by_its_type_or_by_its_label() -> None:
         ({"/joint_states": STATE, "/x": STATE, "/y": STATE}, ("/joint_states", "/x", "/y"), "without a message"),
     ],
 )
-def test_what_is_missing_is_said_with_what_is_there(topics: dict[str, str], empty: tuple[str, ...], words: str) -> None:
+def test_missing_topics_are_reported_with_others(topics: dict[str, str], empty: tuple[str, ...], words: str) -> None:
     with pytest.raises(BagError, match=words) as caught:
         finder(topics, empty=empty).joint_topics(sources_of("joint_effort"))
     assert "\n" not in str(caught.value)

@@ -174,7 +174,7 @@ def test_messages_compressed_singly_are_read_from_a_file_that_lost_its_folder(tm
     assert by_us(Path(alone), topics) == (by_rosbags(path, topics), [])
 
 
-def test_a_message_that_is_not_wholly_compressed_is_noted_and_costs_no_other(tmp_path: Path) -> None:
+def test_an_incompletely_compressed_message_is_noted_and_no_other_is_lost(tmp_path: Path) -> None:
     packed = [message._replace(data=mcap_files.zstd.compress(message.data)) for message in some(0, 30)]
     cut = [*packed[:20], packed[20]._replace(data=packed[20].data[:-2]), *packed[21:]]
     rows, notes = by_us(split_bag(tmp_path / "bag", {"a.mcap": [cut]}, "MESSAGE"))

@@ -139,7 +139,7 @@ def test_too_little_data_gives_no_fit():
     assert pool([]) is None
     (short,) = segments(rng, count=1, span=0.3)
     assert short.values.size == 300
-    assert fit([short]) is None  # 17° tell nothing of lines 2 cycles a revolution apart
+    assert fit([short]) is None  # 17° cannot separate lines 2 cycles per revolution apart
     still = replace(short, values=np.full(short.values.size, 2.0))
     assert products_of_segment(still, ORDERS, np.ones(1)) is None
     brief = segments(rng, count=1)[0]

@@ -71,7 +71,7 @@ def test_shows_the_pair_and_its_combination_lines_on_bins(speed, k):
     assert zoomed.line_amplitudes == pytest.approx((1.0, 0.6), rel=1e-3)
 
 
-def test_resolved_from_the_travel_that_the_geometry_asks_for():
+def test_resolved_from_the_travel_that_the_geometry_requires():
     speed, k = 600.0, 1
     pair = RIG.line_frequencies(speed, k)
     seconds = RIG.travel_to_separate(k) / (math.tau * speed / 60.0 / RIG.reduction)

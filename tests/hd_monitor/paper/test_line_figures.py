@@ -13,7 +13,7 @@ from hd_monitor.paper.line_figures import equation_5, figure_8, line_distance, p
 from hd_monitor.paper.records import amplitude, steady_record
 
 
-def test_figure_8_lines_stand_at_k_times_25_and_25_3125_hz(cases):
+def test_figure_8_lines_are_at_k_times_25_and_25_3125_hz(cases):
     case = cases["table_1"]
     record = steady_record(case.model, case.speed)
     for k in (1, 2, 3):

@@ -93,7 +93,7 @@ def test_a_check_between_assessments_leaves_them_alone() -> None:
     assert watch.present is before
 
 
-def test_a_clock_that_is_set_back_starts_the_silence_anew() -> None:
+def test_a_clock_that_is_set_back_restarts_the_silence() -> None:
     watch = watch_of()
     watch.check(START - 3 * SECOND)
     watch.check(START - 2 * SECOND)
@@ -110,7 +110,7 @@ def test_a_simulated_clock_that_has_not_begun_is_named() -> None:
     assert watch.status().value("fault_code") == "HD_UNDETERMINED"
 
 
-def test_an_error_of_the_core_is_shown_and_the_joint_starts_afresh(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_error_of_the_core_is_shown_and_the_joint_restarts(monkeypatch: pytest.MonkeyPatch) -> None:
     watch = watch_of(input__source="accel_stamped")
     advance = Monitor.advance
 

@@ -23,7 +23,7 @@ def test_names_that_can_stand_in_topics(names: list[str]) -> None:
         (["a/b", "c"], "'a_b'"),
     ],
 )
-def test_names_that_cannot_say_the_way_out(names: list[str], way_out: str) -> None:
+def test_impossible_names_are_refused_with_the_remedy(names: list[str], way_out: str) -> None:
     from hd_monitor.ros.parameters import check_names
 
     with pytest.raises(ParameterError, match=f"call it {way_out}") as caught:

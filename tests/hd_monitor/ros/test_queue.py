@@ -7,14 +7,14 @@ import pytest
 pytestmark = pytest.mark.ros
 
 
-def test_a_queue_holds_the_seconds_asked_for_and_a_few_messages_at_least() -> None:
+def test_a_queue_holds_the_requested_seconds_and_at_least_a_few_messages() -> None:
     from hd_monitor.ros.queue import queue_depth
 
     assert queue_depth(200.0, 2.5) == 500
     assert queue_depth(1.0, 0.1) == 10
 
 
-def test_without_a_known_limit_a_queue_is_as_deep_as_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_a_known_limit_a_queue_is_as_deep_as_requested(monkeypatch: pytest.MonkeyPatch) -> None:
     import rclpy
 
     from hd_monitor.ros.queue import queue_depth

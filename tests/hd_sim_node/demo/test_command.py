@@ -27,7 +27,7 @@ def is_running(pid: int) -> bool:
 def wait_until(condition: Callable[[], object], what: str, patience: float = 60.0) -> None:
     deadline = time.monotonic() + patience
     while not condition():
-        assert time.monotonic() < deadline, f"waited {patience:g} s in vain for {what}"
+        assert time.monotonic() < deadline, f"waited {patience:g} s for {what}"
         time.sleep(0.05)
 
 

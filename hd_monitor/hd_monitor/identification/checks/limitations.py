@@ -89,7 +89,7 @@ class FitSummary:
 
 
 def limitations_of(fit: FitSummary, reducer: Reducer, warn_index: float) -> tuple[Limitation, ...]:
-    """Return what limits a fit, the gravest first among those that forbid naming a part.
+    """Return what limits a fit, the most serious first among those that forbid naming a part.
 
     Parameters
     ----------
@@ -111,7 +111,7 @@ def limitations_of(fit: FitSummary, reducer: Reducer, warn_index: float) -> tupl
 
 
 def _out_of_band(fit: FitSummary, reducer: Reducer) -> Limitation | None:
-    """Return what the sensor's rate hides, or a torque that no reducer bears."""
+    """Return what the sensor's rate hides, or a torque that no reducer withstands."""
     given, rate = fit.predictor.given, 2.0 * fit.highest_frequency
     band = _BAND * fit.highest_frequency
     if given.natural_frequency > band:

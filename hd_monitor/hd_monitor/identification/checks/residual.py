@@ -70,7 +70,7 @@ class Overdispersion:
 
     @property
     def inflation(self) -> float:
-        """Factor on the variances that owns up to the overdispersion: 1 as long as chance explains it."""
+        """Factor by which the overdispersion inflates the variances: 1 as long as chance explains it."""
         if self.freedom <= 0.0:
             return 1.0
         return max(1.0, self.squares / (self.freedom + math.sqrt(2.0 * self.freedom)))

@@ -175,8 +175,8 @@ class Problem:
         """Solve from several starts and return the best solution, with the floor of white noise that belongs to it.
 
         The first step from each start leaves the load where the start has it: only then do the stiffness unknowns
-        mean anything to the load. While the residual is still large the floor is taken to be white, lest the lines
-        that are not explained yet pass for noise.
+        mean anything to the load. While the residual is still large the floor is assumed white, otherwise the lines
+        not explained yet would pass for noise.
         """
         unknowns = self.predictor.unknowns
         held = self.active & ~unknowns.mask(unknowns.load)

@@ -38,7 +38,7 @@ class Linearisation:
     def moved(self, segment: Segment, step: FloatArray) -> "Linearisation":
         """Return the linearisation at a point a small `step` of the unknowns on, to first order of the step.
 
-        The free vibration is fitted to the measurement anew; the derivatives stay as they are.
+        The free vibration is fitted to the measurement again; the derivatives do not change.
         """
         start, residual = _fit_free(segment, self.residual - self.jacobian @ step, self.free)
         predicted = self.predicted + self.jacobian @ step + self.free @ start

@@ -13,7 +13,7 @@ EDGES = np.concatenate([[0.0], 2.0 ** (np.arange(61) / 4.0)])
 EDGES.flags.writeable = False
 
 _CENTRES = np.concatenate([[0.5], np.sqrt(EDGES[1:-1] * EDGES[2:])])
-_FREEDOM = 60.0  # degrees of freedom that a band needs to stand alone; neighbours are pooled below that
+_FREEDOM = 60.0  # degrees of freedom that a band needs on its own; neighbours are pooled below that
 _LEAST_SHARE = 0.1  # of the rows' noise that a fit leaves
 _LOWEST_DENSITY = 1e-20  # of the whole power: noise-free data have a floor all the same
 
@@ -98,7 +98,7 @@ class NoiseFloor:
         # Plain numbers: there are few bands, and an array for each step would cost more than all of them
         freedoms, powers = self.freedom[known].tolist(), self.power[known].tolist()
         logarithms, weights = np.log2(_CENTRES[known]).tolist(), [1.0] * len(powers)
-        # pool the poorest band with its poorer neighbour until every band stands on enough residual
+        # pool the poorest band with its poorer neighbour until every band has enough residual
         while len(powers) > 1 and (least := min(freedoms)) < _FREEDOM:
             poorest = freedoms.index(least)
             left = poorest - 1 if poorest == len(powers) - 1 else poorest

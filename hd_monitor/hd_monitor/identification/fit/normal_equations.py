@@ -56,7 +56,7 @@ class LinearisedSegment:
     equations : NormalEquations
     linearisation : Linearisation
     residual : ndarray, shape (2 * bins,)
-        Transform of the residual, free vibrations taken off, not weighted.
+        Transform of the residual, free vibrations removed, not weighted.
     derivatives : ndarray, shape (2 * bins, unknowns)
         The same of the prediction's derivatives, in standard deviations of the noise.
     std : ndarray, shape (2 * bins,)

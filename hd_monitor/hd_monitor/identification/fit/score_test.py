@@ -17,7 +17,7 @@ class ScoreTest:
     Attributes
     ----------
     value : float
-        The value that the data ask for, to first order; 0 is the one given.
+        The value favoured by the data, to first order; 0 is the one given.
     std : float
         Its standard deviation; inf where the data say nothing.
     response : ndarray, shape (unknowns,)
@@ -42,7 +42,7 @@ def score_tests(
     Parameters
     ----------
     places : sequence of int
-        Where they stand.
+        Their places.
     information : Information
         All evidence and the prior information.
     values : ndarray, shape (unknowns,)
@@ -54,7 +54,7 @@ def score_tests(
     """
     score = information.score(values)
     idle = [place for place in places if not active[place]]
-    sets = [(active, idle)] if idle else []  # those that were not fitted all stand against the same ones
+    sets = [(active, idle)] if idle else []  # all those that were not fitted are tested against the same ones
     for place in places:
         if active[place]:
             others = active.copy()

@@ -14,7 +14,7 @@ TORQUE_LINES: Mapping[int, str] = {1: "", 2: ""}
 """Orders [cycles per output revolution] of unknown torques that are fitted along, and the part that each accuses.
 
 The first two are the load's (gravity, and the fluctuation that mimics the other spline) and accuse nothing. A row that
-names a part is said to stand out as soon as the data bear it.
+names a part is said to stand out as soon as the data support it.
 """
 
 

@@ -1,4 +1,4 @@
-"""Collects records into segments of the length that the state of the estimation asks for."""
+"""Collects records into segments of the length that the state of the estimation requires."""
 
 import math
 
@@ -7,10 +7,10 @@ import numpy as np
 from ...acquisition.record import Record
 
 SHORTEST = 0.25
-"""Length [s] below which a contiguous segment is not worth its two unknown starting values."""
+"""Length [s] below which a contiguous segment does not justify its two unknown starting values."""
 
 _FEWEST_SAMPLES = 64
-_SLACK = 0.1  # s that may lack from the length asked for: records are cut at whole periods of the stamps
+_SLACK = 0.1  # s that may be missing from the required length: records are cut at whole periods of the stamps
 
 
 class SegmentAssembler:
@@ -47,7 +47,7 @@ class SegmentAssembler:
         return done
 
     def flush(self) -> list[list[Record]]:
-        """Return what is pending if it is worth anything, and start anew."""
+        """Return what is pending if it is long enough, and start again."""
         records, duration = self._pending, self.duration
         self._pending = []
         samples = sum(int(np.isfinite(record.acceleration).sum()) for record in records)

@@ -34,7 +34,7 @@ class Decimated:
     factor : int
         Raw sample periods per sample.
     first : int
-        Index of the raw sample that the first one stands for.
+        Index of the raw sample that the first one represents.
     highest_frequency : float
         Frequency [Hz] up to which the values can be trusted.
     """

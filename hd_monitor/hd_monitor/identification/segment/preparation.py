@@ -1,4 +1,4 @@
-"""From records to segments: with the torque that is known or stands for it, and the sensor's sign as found so far."""
+"""From records to segments: with the torque, known or nominal, and the sensor's sign as found so far."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -27,7 +27,7 @@ class Setup:
     Attributes
     ----------
     nominal_torque : float or None
-        Torque [N·m] that stands for an unknown one; None as long as the torque is known.
+        Torque [N·m] used in place of an unknown one; None as long as the torque is known.
     reference_torque : float
         Torque [N·m] in whose unit load fluctuations are expressed; 0 before the first segment.
     mounting : float
@@ -69,7 +69,7 @@ class Preparation:
         return self._builder.inertial
 
     def build(self, records: Sequence[Record], setup: Setup) -> tuple[Segment, Setup]:
-        """Make a segment of records that follow each other; a nominal torque stands for an unknown one.
+        """Make a segment of records that follow each other; a nominal torque replaces an unknown one.
 
         Raises
         ------
@@ -93,7 +93,7 @@ class Preparation:
         return max(level, 0.1 * abs(self._torque), 1e-9 * self._given.stiffness)
 
     def _find_nominal(self, records: Sequence[Record]) -> float:
-        """Torque [N·m] at which the lines would speak of a defect of common size."""
+        """Torque [N·m] at which the lines would indicate a defect of typical size."""
         unit = self._given.stiffness * _TRIAL_WIND_UP
         u, segment = self._unknowns, self._builder.build(records, unit)
         problem = Problem(

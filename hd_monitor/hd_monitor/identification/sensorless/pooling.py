@@ -17,7 +17,7 @@ LEAST_SHARE = 0.1
 """Part of the motion that a direction must have to count."""
 
 RELEARN = 3.0
-"""Growth of the data after which the background is learnt anew."""
+"""Growth of the data after which the background is learnt again."""
 
 
 class GroupFit(NamedTuple):
@@ -61,7 +61,7 @@ class SegmentPool:
         return [pooled.segment for pooled in self._pooled]
 
     def add(self, segment: JointSegment) -> None:
-        """Take a segment in; learn the background anew when the data have grown much."""
+        """Take a segment in; learn the background again when the data have grown much."""
         self._seen += segment.duration
         self._pooled.append(_Pooled(segment, []))
         held = sum(pooled.segment.duration for pooled in self._pooled)

@@ -1,4 +1,4 @@
-"""Which tooth pairs are asked about, and which multiples of their lines count."""
+"""Which tooth pairs are compared, and which multiples of their lines count."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
@@ -54,7 +54,7 @@ class ToothPair(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Candidate:
-    """A tooth pair, and the pairs of lines that speak for it.
+    """A tooth pair, and the pairs of lines that support it.
 
     Attributes
     ----------

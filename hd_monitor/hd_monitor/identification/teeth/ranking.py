@@ -36,7 +36,7 @@ class Ambiguity(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ToothPairEvidence:
-    """What speaks for one pair.
+    """The evidence for one pair.
 
     Attributes
     ----------
@@ -127,7 +127,7 @@ class ToothPairRanking:
         return next(found.log_evidence for found in self.ranked if found.teeth == teeth)
 
     def contradiction(self, given: Reducer) -> Limitation:
-        """Return why no part may be named with the teeth given, where the first pair is to be believed instead."""
+        """Return why no part may be named with the teeth given, where the first pair is accepted instead."""
         best = self.ranked[0]
         return contradiction(given, best.teeth, best.lines if self.margin >= MARGIN else ())
 

@@ -1,4 +1,4 @@
-"""Whether the model with other tooth numbers explains the motion better: the proof where lines alone do not tell."""
+"""Whether the model with other tooth numbers explains the motion better: decides where lines alone do not."""
 
 import math
 from collections.abc import Sequence
@@ -21,7 +21,7 @@ PROOF = 50.0
 """Logarithm of the likelihood ratio by which other teeth must beat those given."""
 
 GAIN = 1.15
-"""Variance left with the given teeth over that left with others, from which these are believed: a tone, smeared over
+"""Variance left with the given teeth over that left with others, from which these are accepted: a tone, smeared over
 the orders by a changing speed, can be mimicked in part, but not so far."""
 
 _ROUNDS = 4
@@ -50,7 +50,7 @@ class ToothTrial:
 
         The likelihood is that of white noise whose variance is at its own best, over the band that all fits look at.
         """
-        # what given teeth need to make up for being wrong, another resonance say, would only lead others astray
+        # what given teeth need to make up for being wrong, such as another resonance, would only mislead others
         u, active = self.problem.predictor.unknowns, self.problem.active
         plain = replace(self.problem, active=active & ~u.mask(u.frequency, u.damping, u.delay))
         # the same chance for the given ones: their best values so far may be those of a local minimum

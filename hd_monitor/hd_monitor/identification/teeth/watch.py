@@ -63,7 +63,7 @@ class ToothWatch:
     doubt: Limitation | None = None
 
     def after(self, fit: Fit, dynamics: Dynamics, *, anew: bool) -> "ToothWatch":
-        """Add the segments of a fit; forget those before if it was made anew of all at hand."""
+        """Add the segments of a fit; forget earlier ones if it was a refit of all segments kept."""
         signal, residual = (OrderSpectrum(), OrderSpectrum()) if anew else (self.signal, self.residual)
         for item in fit.segments:
             signals = item.segment.acceleration, item.linearisation.residual
@@ -83,7 +83,7 @@ class ToothWatch:
         seconds: float,
         one_speed: bool,
     ) -> "ToothWatch":
-        """Compare other tooth numbers with those given, once for each change of what speaks for them.
+        """Compare other tooth numbers with those given, once for each change of the evidence for them.
 
         Parameters
         ----------

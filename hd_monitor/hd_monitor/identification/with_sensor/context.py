@@ -19,7 +19,7 @@ from .state import State
 
 
 class Unexplained(NamedTuple):
-    """What fits leave: the noise floor, and what stands out of it at the lines."""
+    """What fits leave: the noise floor, and what exceeds it at the lines."""
 
     floor: NoiseFloor
     residual: LineResidual
@@ -75,7 +75,7 @@ class Context:
         )
 
     def problem_of_all(self, state: State) -> Problem:
-        """Return the problem of explaining all segments at hand."""
+        """Return the problem of explaining all segments kept."""
         return self.problem(state, state.recent, self.prior)
 
     def unexplained(self, state: State, fit: Fit) -> Unexplained:

@@ -45,7 +45,7 @@ class Estimator:
         return State.initial(self._context.unknowns)
 
     def sureness(self, state: State) -> float:
-        """How well the indexes are known: from 1 on, more data would tell nothing more of interest."""
+        """How well the indexes are known: from 1 on, more data would add nothing of interest."""
         if state.seconds < WINDOW or state.result is None:
             return 0.0
         return sureness(state.result, self._context.settings.diagnosis.warn_index)
@@ -93,7 +93,7 @@ class Estimator:
         return self.aged(state, sum(item.segment.duration for item in fit.segments))
 
     def _fit(self, state: State) -> tuple[State, Fit]:
-        """Fit the newest segment on top of what is known; every now and then, while all are at hand, all of them."""
+        """Fit the newest segment on top of what is known; from time to time, while all are kept, all of them."""
         context = self._context
         if state.floor is None:
             state = replace(state, schedule=state.schedule.with_look(state.seconds))

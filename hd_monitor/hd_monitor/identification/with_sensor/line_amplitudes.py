@@ -21,7 +21,7 @@ def measure_lines(
 ) -> tuple[LineEstimate, ...]:
     """Amplitudes of θ'' [rad/s²] of the line pairs k = 1 … harmonics over the newest segments.
 
-    Pairs above what the sampling rate shows are left out, and all of them where the travel does not tell them apart.
+    Pairs above what the sampling rate shows are left out, and all of them where the travel does not separate them.
     Where it allows that, the lines that load fluctuations and the coupling of the two splines put between and beside
     a pair are fitted along, so that they are not mistaken for it.
 

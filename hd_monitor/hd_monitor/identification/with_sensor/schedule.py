@@ -26,7 +26,7 @@ class Schedule:
     poor_since : float
         Motion [s] seen when fits became poor; inf while they are not.
     restarted : float
-        Motion [s] seen when all segments at hand were last fitted as a whole.
+        Motion [s] seen when all segments kept were last fitted as a whole.
     """
 
     looked: float = 0.0
@@ -42,7 +42,7 @@ class Schedule:
         return replace(self, looked=seconds)
 
     def is_due(self, inflation: float, seconds: float) -> bool:
-        """Whether to look now, after a fit that :meth:`after` was told of."""
+        """Whether to look now, after a fit that :meth:`after` was given."""
         if self.looked < SECOND_LOOK:
             return seconds >= SECOND_LOOK and inflation > 1.0
         if not inflation > POOR:

@@ -43,7 +43,7 @@ def look_elsewhere(context: Context, state: State, fit: Fit) -> tuple[State, Fit
 def restart(
     context: Context, state: State, small: Problem, starts: Sequence[FloatArray], rounds: int
 ) -> tuple[State, Fit]:
-    """Fit all segments at hand from what the newest ones told, and forget what was learnt of them before."""
+    """Fit all segments kept, starting from the newest ones' result, and forget what was learnt from them before."""
     state = state.restarted()
     problem = context.problem_of_all(state)
     whole = replace(problem, floor=small.floor)
@@ -54,7 +54,7 @@ def restart(
 def turn_sensor(context: Context, state: State, fit: Fit) -> tuple[State, Fit]:
     """Try the sensor's sign the other way round: against that of the torque it is a matter of mounting.
 
-    To first order the opposite sign only turns the phases of all β; the coupling of the lines tells it. The load's
+    To first order the opposite sign only turns the phases of all β; the coupling of the lines decides. The load's
     local minima come in either sign, so it is turned only where no load explains the motion as it is.
     """
     u = context.unknowns

@@ -77,14 +77,14 @@ class State:
         return self.coverage.time
 
     def with_segment(self, segment: Segment, setup: Setup) -> "State":
-        """Return the state with a segment at hand that is still to be fitted."""
+        """Return the state with a further segment, still to be fitted."""
         recent = (*self.recent, segment)
         while sum(s.duration for s in recent[1:]) >= WINDOW:
             recent = recent[1:]
         return replace(self, recent=recent, coverage=self.coverage.plus(segment), setup=setup, unusable=None)
 
     def restarted(self) -> "State":
-        """Return the state without what was learnt of the segments, as all those at hand are fitted again."""
+        """Return the state without what was learnt of the segments, as all those kept are fitted again."""
         return replace(
             self,
             information=Information.none(self.values.size),

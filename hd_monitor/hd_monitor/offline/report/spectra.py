@@ -36,7 +36,7 @@ class OrderMap(NamedTuple):
 
 
 def filled(values: FloatArray) -> FloatArray:
-    """Bridge missing samples linearly and take off the mean."""
+    """Bridge missing samples linearly and remove the mean."""
     known = np.isfinite(values)
     if not known.any():
         return np.zeros_like(values)

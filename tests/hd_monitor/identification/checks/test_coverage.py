@@ -28,7 +28,7 @@ def segment(start, speed):
     return BUILDER.build([record], None)
 
 
-def test_nothing_seen_is_no_motion():
+def test_nothing_seen_means_no_motion():
     assert (Coverage().span, Coverage().mean_speed, Coverage().speed_varies) == (0.0, 0.0, False)
 
 

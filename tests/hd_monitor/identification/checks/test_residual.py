@@ -85,7 +85,7 @@ def test_the_scatter_of_noise_is_what_noise_leads_to_expect(of_noise):
 def test_pure_noise_is_hardly_ever_inflated(of_noise):
     assert np.mean([rest.overdispersion.inflation for rest in of_noise]) < 1.06
     assert np.mean([rest.inflation(ANGLE[-1]) > 1.0 for rest in of_noise]) < 0.1
-    # what the unknowns follow is no part of the residual any more
+    # what the unknowns follow is no longer part of the residual
     assert 0.4 < np.mean([rest.misfit for rest in of_noise]) < 1.0
 
 

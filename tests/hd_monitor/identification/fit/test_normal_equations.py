@@ -88,7 +88,7 @@ def test_twice_the_noise_is_a_quarter_of_the_information(clean):
     assert 4.0 * loud.cost == pytest.approx(quiet.cost)
 
 
-def test_a_small_step_leads_where_looking_anew_leads(clean):
+def test_a_small_step_agrees_with_linearising_again(clean):
     step = UNKNOWNS.zero()
     step[UNKNOWNS.stiffness] = 1e-5
     moved = at_truth(clean, 1).moved(step)

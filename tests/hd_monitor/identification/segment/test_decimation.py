@@ -24,7 +24,7 @@ def test_a_rate_far_higher_than_needed_is_reduced_and_the_pass_band_kept():
     assert result.factor > 4
     assert result.highest_frequency == pytest.approx(PASS_BAND * RATE / result.factor)
     times = (result.first + result.factor * np.arange(result.values.size)) / RATE
-    # samples stand where they say: no delay, no loss
+    # samples are where they claim to be: no delay, no loss
     assert result.values == pytest.approx(np.cos(2.0 * np.pi * LINE * times + 0.3), abs=2e-3)
 
 

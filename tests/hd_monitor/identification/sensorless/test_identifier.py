@@ -218,7 +218,7 @@ def test_too_fast_for_the_rate_is_named():
     assert "too fast" in reason
 
 
-def test_standing_still_gives_no_result():
+def test_a_standing_joint_has_no_result():
     times = np.arange(0.0, 30.0, 0.01)
     noise = 1e-5 * np.random.default_rng(1).standard_normal(times.size)
     samples = JointSamples(times=times, angle=noise, speed=100.0 * noise, effort=noise)

@@ -26,7 +26,7 @@ def swinging(lines, noise=0.1, seconds=60.0, seed=1, span=1.4):
 
 
 @pytest.mark.parametrize("teeth", [(100, 102), (160, 162), (161, 163), (200, 202), (240, 242)])
-def test_two_lines_tell_the_teeth_out_of_every_pair(teeth):
+def test_two_lines_determine_the_teeth_among_all_pairs(teeth):
     ranking = rank_tooth_pairs(swinging(dict.fromkeys(teeth, 0.2)))
     assert ranking.ranked[0].teeth == ToothPair(*teeth)
     assert ranking.conclusive
@@ -38,20 +38,20 @@ def test_two_lines_tell_the_teeth_out_of_every_pair(teeth):
     assert evidence == sorted(evidence, reverse=True)
 
 
-def test_one_line_alone_does_not_tell():
+def test_one_line_alone_is_not_conclusive():
     ranking = rank_tooth_pairs(swinging({200: 0.3}))
     assert {found.teeth for found in ranking.ranked[:3]} >= {(198, 200), (200, 202)}
     assert not ranking.conclusive
     assert "not conclusive" in describe_ranking(ranking)
 
 
-def test_a_strong_line_with_a_companion_lost_in_noise_does_not_tell():
+def test_a_strong_line_with_a_companion_lost_in_noise_is_not_conclusive():
     ranking = rank_tooth_pairs(swinging({200: 0.5, 202: 0.002}))
     assert ranking.ranked[0].lines_found < 2
     assert not ranking.conclusive
 
 
-def test_noise_alone_does_not_tell():
+def test_noise_alone_is_not_conclusive():
     for seed in range(4):
         ranking = rank_tooth_pairs(swinging({}, seed=seed))
         assert not ranking.conclusive
@@ -59,13 +59,13 @@ def test_noise_alone_does_not_tell():
         assert "stand out of the noise" in describe_ranking(ranking)
 
 
-def test_little_travel_does_not_tell():
+def test_little_travel_is_not_conclusive():
     ranking = rank_tooth_pairs(swinging({200: 0.1, 202: 0.1}, span=0.1))
     assert math.degrees(ranking.travel) < 40.0
     assert not ranking.conclusive
 
 
-def test_one_speed_does_not_tell_because_any_fixed_frequency_would_do():
+def test_one_speed_is_not_conclusive_because_any_fixed_frequency_would_fit():
     times = np.arange(0.0, 60.0, 0.01)
     angle = 0.5 * times
     effort = 0.3 * np.cos(160 * angle) + 0.3 * np.cos(162 * angle)
@@ -84,7 +84,7 @@ def test_an_encoder_s_orders_are_not_taken_for_teeth():
 
 
 def test_multiples_belong_to_their_pair():
-    """The second pair's lines at 240 and 244 are no reason for 240/242 teeth; the motor's 60 none for 60/62."""
+    """The second pair's lines at 240 and 244 do not suggest 240/242 teeth, nor does the motor's at 60 suggest 60/62."""
     ranking = rank_tooth_pairs(swinging({60: 0.4, 120: 0.15, 122: 0.15, 240: 0.3, 244: 0.3}))
     assert ranking.ranked[0].teeth == ToothPair(120, 122)
     assert ranking.conclusive
@@ -140,14 +140,14 @@ def accelerations(teeth, from_hz, rate_hz, seconds, noise=0.05):
 
 
 @pytest.mark.parametrize("teeth", [(160, 162), (120, 122)])
-def test_accelerations_tell_the_teeth_too(teeth):
+def test_accelerations_determine_the_teeth_too(teeth):
     ranking = rank_tooth_pairs(accelerations(teeth, 6.0, 0.4, 40.0))
     assert ranking.ranked[0].teeth == ToothPair(*teeth)
     assert ranking.conclusive
 
 
 @pytest.mark.parametrize("candidates", [[], [(160, 164)]])
-def test_refuses_candidates_that_are_none(candidates):
+def test_refuses_invalid_candidates(candidates):
     with pytest.raises(ParameterError):
         rank_tooth_pairs(swinging({}, seconds=5.0), candidates=candidates)
 

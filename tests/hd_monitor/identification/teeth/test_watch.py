@@ -152,14 +152,14 @@ def test_the_motors_lines_and_their_side_lines_contradict_nothing():
 
 
 @pytest.mark.parametrize("shift", [-40, -20, -2, -1, 1, 2, 20, 40])
-def test_other_teeth_are_told_by_their_lines_whatever_they_share_with_those_given(shift):
+def test_other_teeth_are_recognised_by_their_lines_even_if_some_are_shared(shift):
     lines = {160: 0.3, 162: 1.0, 320: 0.3, 324: 0.2}
     moved = {(order // 160) * shift + order: size for order, size in lines.items()}
     assert f"{160 + shift}/{162 + shift} teeth" in said(look(watching(moved)))
     assert look(watching(lines)).doubt is None
 
 
-def test_nothing_is_asked_while_nothing_is_unexplained():
+def test_teeth_are_not_compared_while_nothing_is_unexplained():
     lines = {200: 1.0, 202: 0.5}
     for seed in range(40):
         quiet = ToothWatch(signal=spectrum(lines), residual=spectrum({}, seed=seed))

@@ -26,7 +26,7 @@ def test_a_doubtful_first_exploration_is_repeated_once():
     assert times[0] >= SECOND_LOOK
 
 
-def test_looks_that_do_not_help_become_ever_rarer():
+def test_looks_that_do_not_help_become_rarer():
     times = looks(lambda now: 10.0 * POOR)
     assert 2 <= len(times) <= 6
     assert times[1] <= 12.0
