@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from .batches import Batch, RawMessage, RawTopic, Window, in_batches
 from .compression import MAGIC, decompress, decompress_file
 from .errors import BagError, one_line
-from .salvage import Walk, restore_length, walk_through
+from .salvage import McapWalk, SqliteWalk, Walk, restore_length
 from .sqlite import WholeSqlite, has_unsaved_rows
 from .whole_mcap import WholeMcap
 
@@ -172,7 +172,8 @@ class Bag:
             if restore_length(plain, whole):
                 self._note(f"{plain.name} is cut off: the recording was not closed")
                 plain = whole
-        return walk_through(plain, self._note)
+            return SqliteWalk(plain, self._note)
+        return McapWalk(plain, self._note)
 
     def _plain(self, file: Path) -> Path:
         """Return `file`, or a decompressed copy of it that lives as long as the bag is open."""

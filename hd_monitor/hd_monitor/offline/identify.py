@@ -1,7 +1,6 @@
 """Identification from recordings: all that is known of a joint, pooled over bags, by the monitor's own core."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -20,9 +19,8 @@ from .bag import Bag
 from .errors import BagError
 from .identify_teeth import ToothCheck
 from .plan import JointPlan, Request, plan
-from .progress import ProgressLine
-from .replay import replay
-from .result import JointResult
+from .replay import SomeIdentifier
+from .run import run
 
 WHOLE_RECORDING: Mapping[str, Any] = {"analysis.memory": 86_400.0, "dynamics.refine": True}
 """What a parameter file says for watching does not suit identification: nothing fades, and fn and ζ are sought."""
@@ -54,7 +52,7 @@ class JointIdentification:
     """
 
     plan: JointPlan
-    identifier: Identifier | SensorlessIdentifier
+    identifier: SomeIdentifier
     tooth_check: ToothCheck
     bags: list[str] = field(default_factory=list)
     found: Identification | None = None
@@ -113,12 +111,15 @@ def identify(
     request = replace(request, parameters=_for_identification(request.parameters, by_hand))
     joints: dict[str, JointIdentification] = {}
     for path in paths:
-        with _named(path), Bag(path) as bag:
-            plans = plan(bag, request)
-            _pair_up(joints, plans, path)
-            _go_through(bag, plans, joints)
-            for sentence in bag.notes:
-                note(f"{path}: {sentence}" if len(paths) > 1 else sentence)
+        try:
+            with Bag(path) as bag:
+                plans = plan(bag, request)
+                _pair_up(joints, plans, path)
+                _go_through(bag, plans, joints)
+        except BagError as error:
+            raise error if str(path) in str(error) else BagError(f"{path}: {error}") from None
+        for sentence in bag.notes:
+            note(f"{path}: {sentence}" if len(paths) > 1 else sentence)
     for joint in joints.values():
         joint.found = joint.identifier.finish()
         joint.teeth = joint.tooth_check.ranking()
@@ -126,29 +127,17 @@ def identify(
     if len(complaints) == len(joints):
         raise BagError("; ".join(complaints))
     for joint in joints.values():
-        for complaint in dict.fromkeys([*joint.complaints, *([joint.unusable] if joint.unusable else [])]):
-            note(complaint)
+        for complaint in dict.fromkeys([*joint.complaints, joint.unusable]):
+            if complaint:
+                note(complaint)
     return [joint for joint in joints.values() if not joint.unusable]
 
 
 def _for_identification(parameters: Mapping[str, Any], by_hand: Sequence[str]) -> dict[str, Any]:
     """Put `WHOLE_RECORDING` in force, also below the joints' names."""
-    ours = [name for name in WHOLE_RECORDING if name not in by_hand]
-    kept = {
-        name: value
-        for name, value in parameters.items()
-        if name in by_hand or not any(name == own or name.endswith(f".{own}") for own in ours)
-    }
-    return kept | {name: WHOLE_RECORDING[name] for name in ours}
-
-
-@contextmanager
-def _named(path: Path) -> Iterator[None]:
-    """Put the recording's name before what is wrong with it, if it is not in there."""
-    try:
-        yield
-    except BagError as error:
-        raise error if str(path) in str(error) else BagError(f"{path}: {error}") from None
+    ours = {name: value for name, value in WHOLE_RECORDING.items() if name not in by_hand}
+    void = {name for name in parameters if name not in by_hand and any(f".{name}".endswith(f".{own}") for own in ours)}
+    return {name: value for name, value in parameters.items() if name not in void} | ours
 
 
 def _pair_up(joints: dict[str, JointIdentification], plans: Sequence[JointPlan], path: Path) -> None:
@@ -156,19 +145,13 @@ def _pair_up(joints: dict[str, JointIdentification], plans: Sequence[JointPlan],
     for item in plans:
         known = joints.get(item.joint)
         if known is None:
-            sensorless = item.settings.sensorless
-            joints[item.joint] = JointIdentification(
-                plan=item,
-                identifier=SensorlessIdentifier(item.settings)
-                if sensorless
-                else Identifier(item.settings, sparing=False),
-                tooth_check=ToothCheck(item.settings),
-            )
+            own = item.settings
+            identifier = SensorlessIdentifier(own) if own.sensorless else Identifier(own, sparing=False)
+            joints[item.joint] = JointIdentification(plan=item, identifier=identifier, tooth_check=ToothCheck(own))
         elif known.settings.values != item.settings.values:
-            ours, theirs = (dict(settings.values) for settings in (known.settings, item.settings))
-            differ = ", ".join(
-                f"{name} = {ours[name]} and {theirs[name]}" for name in ours if ours[name] != theirs[name]
-            )
+            ours, theirs = dict(known.settings.values), dict(item.settings.values)
+            changed = [name for name, value in ours.items() if value != theirs[name]]
+            differ = ", ".join(f"{name} = {ours[name]} and {theirs[name]}" for name in changed)
             raise ParameterError(
                 f"joint {item.joint!r}: {path} would need other parameters than the recordings before it ({differ}); "
                 "set them with -p, or identify the recordings one by one"
@@ -177,16 +160,9 @@ def _pair_up(joints: dict[str, JointIdentification], plans: Sequence[JointPlan],
 
 def _go_through(bag: Bag, plans: Sequence[JointPlan], joints: Mapping[str, JointIdentification]) -> None:
     """Feed one recording to the identifiers."""
-    results = {item.joint: JointResult(item) for item in plans}
-    progress = ProgressLine(bag)
-    identifiers = {item.joint: joints[item.joint].identifier for item in plans}
-    for said in replay(bag, plans, progress, identifiers):
-        results[said.plan.joint].add(said)
-        if not said.last:
-            joints[said.plan.joint].tooth_check.add(said.assessment)
-    progress.close()
-    for name, result in results.items():
-        joint = joints[name]
+    checks = {name: joint.tooth_check for name, joint in joints.items()}
+    for result in run(bag, plans, checks, {name: joint.identifier for name, joint in joints.items()}):
+        joint = joints[result.plan.joint]
         joint.identifier.finish()  # nothing joins one recording's end to the next one's beginning
         joint.tooth_check.cut()
         if result.unusable:

@@ -104,23 +104,6 @@ def checked_content(chunk: Chunk) -> bytes:
     return content
 
 
-class Channels:
-    """Topics and their types by the number of their channel, as the records name them."""
-
-    def __init__(self) -> None:
-        self._types: dict[int, str] = {}
-        self.topics: dict[int, tuple[str, str]] = {}
-
-    def learn(self, code: int, body: bytes) -> None:
-        """Keep what a record says of types or topics."""
-        if code == Opcode.SCHEMA and len(body) >= 6:
-            (number,) = struct.unpack_from("<H", body)
-            self._types[number] = _string(body, 2)
-        elif code == Opcode.CHANNEL and len(body) >= 8:
-            number, schema = struct.unpack_from("<HH", body)
-            self.topics[number] = (_string(body, 4), self._types.get(schema, ""))
-
-
 class Messages(NamedTuple):
     """Messages of one chunk: their times of recording [ns], their channels, and where in `content` each one stands."""
 
@@ -194,6 +177,7 @@ def _numbers(content: bytes, kind: str, places: NDArray[np.int64]) -> NDArray[An
     return np.ndarray((count,), dtype, content, strides=(1,))[places]
 
 
-def _string(body: bytes, at: int) -> str:
+def string_at(body: bytes, at: int) -> str:
+    """Read a string that its length precedes."""
     (length,) = struct.unpack_from("<I", body, at)
     return body[at + 4 : at + 4 + length].decode(errors="replace")

@@ -11,6 +11,7 @@ _ON_TERMINAL = 0.2
 _ELSEWHERE = 5.0
 _FIRST = 1.0
 """Seconds between two lines; a replay that takes less than the last shows none."""
+_WIPE = "\r\x1b[2K"
 
 
 class ProgressLine:
@@ -23,17 +24,14 @@ class ProgressLine:
 
     def __init__(self, bag: Bag) -> None:
         self._bag = bag
-        self._stream = sys.stderr
-        self._terminal = self._stream.isatty()
+        self._terminal = sys.stderr.isatty()
         self._began = time.monotonic()
         self._next = self._began + (_FIRST if self._terminal else _ELSEWHERE)
         self._first: int | None = None
-        self._shown = False
 
     def __call__(self, window: Window) -> None:
         """Show the progress if it is time to."""
-        if self._first is None:
-            self._first = window.start
+        self._first = window.start if self._first is None else self._first
         now = time.monotonic()
         if now < self._next:
             return
@@ -43,12 +41,11 @@ class ProgressLine:
         first, last = self._bag.span or (0, 0)
         if last > first:
             text = f"{min((window.end - first) / (last - first), 1.0):4.0%}: {text}"
-        self._stream.write(f"\r\x1b[2K{text}" if self._terminal else f"{text}\n")
-        self._stream.flush()
-        self._shown = True
+        sys.stderr.write(f"{_WIPE}{text}" if self._terminal else f"{text}\n")
+        sys.stderr.flush()
 
     def close(self) -> None:
         """Wipe the line off a terminal."""
-        if self._terminal and self._shown:
-            self._stream.write("\r\x1b[2K")
-            self._stream.flush()
+        if self._terminal:
+            sys.stderr.write(_WIPE)
+            sys.stderr.flush()

@@ -1,7 +1,7 @@
 """Replay: a recording's messages through the same monitors, by the same path, as in the node."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from ..adapters import Inputs
 from ..assessment import Assessment
@@ -14,29 +14,22 @@ from .batches import Window
 from .plan import JointPlan
 
 Progress = Callable[[Window], None]
+SomeIdentifier = Identifier | SensorlessIdentifier
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Replayed:
-    """What a monitor said, and of which joint.
-
-    Attributes
-    ----------
-    plan : JointPlan
-    assessment : Assessment
-    last : bool
-        True for what a node would show at the recording's end; it may repeat the one before.
-    """
+class Replayed(NamedTuple):
+    """What a monitor said, and of which joint."""
 
     plan: JointPlan
     assessment: Assessment
     last: bool = False
+    """True for what a node would show at the recording's end; it may repeat the one before."""
 
 
 class _Channel:
     """One joint's monitor with its inputs."""
 
-    def __init__(self, plan: JointPlan, identifier: Identifier | SensorlessIdentifier | None) -> None:
+    def __init__(self, plan: JointPlan, identifier: SomeIdentifier | None) -> None:
         self.plan = plan
         self.monitor = Monitor(plan.settings, identifier)
         self._inputs = Inputs(plan.joint, plan.settings, self.monitor)
@@ -45,30 +38,29 @@ class _Channel:
 
     def feed(self, window: Window) -> Iterator[Replayed]:
         """Hand over a window's messages; yield what the monitor says to them."""
-        messages = {quantity: window.messages.get(topic) for quantity, topic in self.plan.topics.items()}
-        if not any(messages.values()):
+        messages = {q: window.messages[topic] for q, topic in self.plan.topics.items() if topic in window.messages}
+        if not messages:
             return
         if self._heard is not None and window.start - self._heard >= self._timeout:
-            yield Replayed(plan=self.plan, assessment=self.monitor.silence(self._heard + self._timeout))
+            yield Replayed(self.plan, self.monitor.silence(self._heard + self._timeout))
         self._heard = window.end
         for quantity, new in messages.items():
-            if new:
-                self._inputs.add(quantity, new)
+            self._inputs.add(quantity, new)
         for assessment in self.monitor.advance():
-            yield Replayed(plan=self.plan, assessment=assessment)
+            yield Replayed(self.plan, assessment)
 
     def finish(self) -> Replayed:
         """Return what a node would show at the end."""
         # Without any usable input the monitor has nothing to assess, but knows what it had to reject.
         assessment = self.monitor.finish() or self.monitor.silence((self._heard or 0) + self._timeout)
-        return Replayed(plan=self.plan, assessment=assessment, last=True)
+        return Replayed(self.plan, assessment, last=True)
 
 
 def replay(
     bag: Bag,
     plans: Sequence[JointPlan],
     progress: Progress | None = None,
-    identifiers: Mapping[str, Identifier | SensorlessIdentifier] | None = None,
+    identifiers: Mapping[str, SomeIdentifier] | None = None,
 ) -> Iterator[Replayed]:
     """Put a recording through one monitor a joint, as fast as the machine allows.
 
@@ -84,8 +76,8 @@ def replay(
     Yields
     ------
     Replayed
-        Every assessment in the order of the stamps, joint by joint within a dozen seconds of recorded time; then each
-        joint's last one.
+        Every assessment in the order of the stamps, joint by joint within some thousand messages; then each joint's
+        last one.
     """
     known = identifiers or {}
     channels = [_Channel(plan, known.get(plan.joint)) for plan in plans]

@@ -1,19 +1,56 @@
 """Replay a recording from start to end and collect what was said: what the commands do with a bag."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
+from ..assessment import Assessment
 from .bag import Bag
 from .errors import BagError
 from .plan import JointPlan, Request, plan
 from .progress import ProgressLine
-from .replay import replay
+from .replay import SomeIdentifier, replay
 from .result import JointResult, as_dict
 
 if TYPE_CHECKING:
     from .report.collector import Collector
+
+
+class Listener(Protocol):
+    """Takes the assessments of a joint as they come."""
+
+    def add(self, assessment: Assessment) -> None:
+        """Take the next assessment."""
+
+
+class Outcome(NamedTuple):
+    """What a replay gave."""
+
+    content: dict[str, Any]
+    """As ``--json`` writes it."""
+    joints: list[JointResult]
+    notes: list[str]
+    """What is wrong with the recording or one of its joints."""
+    collectors: Mapping[str, "Collector"]
+    """By joint; empty unless a report was requested."""
+
+
+def run(
+    bag: Bag,
+    plans: Sequence[JointPlan],
+    listeners: Mapping[str, Listener],
+    identifiers: Mapping[str, SomeIdentifier] | None = None,
+) -> list[JointResult]:
+    """Replay an open recording, with progress on standard error; `listeners` and `identifiers` are by joint."""
+    results = {item.joint: JointResult(item) for item in plans}
+    progress = ProgressLine(bag)
+    for said in replay(bag, plans, progress, identifiers):
+        joint = said.plan.joint
+        results[joint].add(said)
+        if joint in listeners and not said.last:
+            listeners[joint].add(said.assessment)
+    progress.close()
+    return list(results.values())
 
 
 def _collectors(plans: Sequence[JointPlan]) -> dict[str, "Collector"]:
@@ -22,29 +59,8 @@ def _collectors(plans: Sequence[JointPlan]) -> dict[str, "Collector"]:
     return {item.joint: Collector(item.settings) for item in plans}
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Outcome:
-    """What a replay gave.
-
-    Attributes
-    ----------
-    content : dict
-        As ``--json`` writes it.
-    joints : list of JointResult
-    notes : list of str
-        What is wrong with the recording or one of its joints.
-    collectors : mapping of str to Collector
-        By joint; empty unless a report was requested.
-    """
-
-    content: dict[str, Any]
-    joints: list[JointResult]
-    notes: list[str]
-    collectors: Mapping[str, "Collector"]
-
-
 def replay_bag(path: Path, request: Request, *, for_report: bool = False) -> Outcome:
-    """Replay a recording, with progress on standard error.
+    """Replay a recording.
 
     Raises
     ------
@@ -55,19 +71,10 @@ def replay_bag(path: Path, request: Request, *, for_report: bool = False) -> Out
     """
     with Bag(path) as bag:
         plans = plan(bag, request)
-        results = {item.joint: JointResult(item) for item in plans}
         collectors = _collectors(plans) if for_report else {}
-        progress = ProgressLine(bag)
-        for said in replay(bag, plans, progress):
-            results[said.plan.joint].add(said)
-            if collectors and not said.last:
-                collectors[said.plan.joint].add(said.assessment)
-        progress.close()
+        joints = run(bag, plans, collectors)
         notes = list(bag.notes)
-    joints = list(results.values())
     complaints = [joint.unusable for joint in joints if joint.unusable]
     if len(complaints) == len(joints):
         raise BagError("; ".join([*complaints, *notes]))
-    return Outcome(
-        content=as_dict(str(path), notes, joints), joints=joints, notes=notes + complaints, collectors=collectors
-    )
+    return Outcome(as_dict(str(path), notes, joints), joints, notes + complaints, collectors)

@@ -21,16 +21,11 @@ from . import mcap_records, sqlite
 from .batches import RawMessage, RawTopic
 from .compression import decompress
 from .errors import BagError, one_line
-from .mcap_records import Channels, DamageError, Records, bare_message, heads, parse_chunk
+from .mcap_records import DamageError, Records, bare_message, heads, parse_chunk, string_at
 
 Note = Callable[[str], None]
 _Row = tuple[tuple[str, str], int, bytes]
 """A message: its topic and the topic's type, the time it was recorded at [ns] and its bytes."""
-
-
-def walk_through(path: Path, note: Note) -> "Walk":
-    """Return the walk that suits a file's name."""
-    return McapWalk(path, note) if path.suffix == ".mcap" else SqliteWalk(path, note)
 
 
 class Walk(ABC):
@@ -52,6 +47,7 @@ class Walk(ABC):
     KIND: str
 
     def __init__(self, path: Path, note: Note) -> None:
+        self._topics: dict[int, tuple[str, str]] = {}
         self._path = path
         self._note = note
         with path.open("rb") as file:
@@ -63,16 +59,12 @@ class Walk(ABC):
     def topics(self) -> list[RawTopic]:
         """Find the topics and count their messages, in one walk through the file."""
         counts = Counter(topic for topic, _, _ in self._rows(lambda _: None))
-        return [RawTopic(*topic, counts[topic]) for topic in dict.fromkeys([*counts, *self._named()])]
+        return [RawTopic(*topic, counts[topic]) for topic in dict.fromkeys([*counts, *self._topics.values()])]
 
     def messages(self) -> Iterator[RawMessage]:
         """Yield all messages that are whole, in the order in which they were written, each chunk's by time."""
         for (name, _), time, data in self._rows(self._note):
             yield RawMessage(name, time, data)
-
-    @abstractmethod
-    def _named(self) -> Iterator[tuple[str, str]]:
-        """Yield the topics named so far, and their types."""
 
     @abstractmethod
     def _rows(self, note: Note) -> Iterator[_Row]: ...
@@ -86,13 +78,9 @@ class McapWalk(Walk):
 
     def __init__(self, path: Path, note: Note) -> None:
         super().__init__(path, note)
-        self._channels = Channels()
-
-    def _named(self) -> Iterator[tuple[str, str]]:
-        yield from self._channels.topics.values()
+        self._types: dict[int, str] = {}
 
     def _rows(self, note: Note) -> Iterator[_Row]:
-        topics = self._channels.topics
         with self._path.open("rb") as file:
             for code, body in self._records(file, note):
                 if code == Opcode.CHUNK:
@@ -100,11 +88,11 @@ class McapWalk(Walk):
                 elif code == Opcode.MESSAGE:
                     found = bare_message(body)
                 else:
-                    self._channels.learn(code, body)
+                    self._learn(code, body)
                     continue
                 for channel, time, data in found:
-                    if channel in topics:
-                        yield topics[channel], time, data
+                    if channel in self._topics:
+                        yield self._topics[channel], time, data
 
     def _records(self, file: BinaryIO, note: Note) -> Iterator[tuple[int, bytes]]:
         """Yield kind and body of each record that matters, up to the end or the first damage."""
@@ -117,6 +105,15 @@ class McapWalk(Walk):
         except DamageError as damage:
             note(str(damage))
 
+    def _learn(self, code: int, body: bytes) -> None:
+        """Keep what a record says of types or topics."""
+        if code == Opcode.SCHEMA and len(body) >= 6:
+            (number,) = struct.unpack_from("<H", body)
+            self._types[number] = string_at(body, 2)
+        elif code == Opcode.CHANNEL and len(body) >= 8:
+            number, schema = struct.unpack_from("<HH", body)
+            self._topics[number] = string_at(body, 4), self._types.get(schema, "")
+
     def _chunk(self, body: bytes, note: Note) -> Iterator[tuple[int, int, bytes]]:
         try:
             chunk = parse_chunk(body)
@@ -128,7 +125,7 @@ class McapWalk(Walk):
             note(f"{self._path.name}: {chunk.uncompressed_size - len(content)} bytes of a chunk are missing")
         records = Records.parse(content)
         for code, part in records.others:
-            self._channels.learn(code, part)
+            self._learn(code, part)
         found = records.messages
         rows = zip(found.channels.tolist(), found.times.tolist(), found.data(), strict=True)
         return iter(sorted(rows, key=itemgetter(1)))
@@ -164,21 +161,17 @@ class SqliteWalk(Walk):
         super().__init__(path, note)
         try:
             with closing(sqlite.connect(path)) as database:
-                rows = database.execute("SELECT id, name, type FROM topics").fetchall()
-            self._topics = {int(number): (str(name), str(kind)) for number, name, kind in rows}
+                for number, name, kind in database.execute("SELECT id, name, type FROM topics"):
+                    self._topics[int(number)] = str(name), str(kind)
         except Exception as error:  # a damaged file also yields invalid text and numbers
             reason = f"{path} is damaged in its list of topics ({one_line(error)}); give another recording"
             raise BagError(reason) from None
 
-    def _named(self) -> Iterator[tuple[str, str]]:
-        yield from self._topics.values()
-
     def _rows(self, note: Note) -> Iterator[_Row]:
         try:
             with closing(sqlite.connect(self._path)) as database:
-                for number, time, data in database.execute(
-                    "SELECT topic_id, timestamp, data FROM messages NOT INDEXED"
-                ):
+                rows = database.execute("SELECT topic_id, timestamp, data FROM messages NOT INDEXED")
+                for number, time, data in rows:
                     if number in self._topics and isinstance(time, int) and isinstance(data, bytes):
                         yield self._topics[number], time, data
         except Exception as error:  # a damaged file also yields invalid text
