@@ -93,7 +93,7 @@ def _parse_joint_state(message: bytes) -> Layout[tuple[str, ...]]:
         values = template.count()
         if values not in (0, count):
             raise LayoutError(
-                f"a joint state has {count} names but {values} values of {name}; it must have one a joint, or none"
+                f"a joint state has {count} names but {values} values of {name}; it must have one per joint, or none"
             )
         template.doubles(name, values)
     return template.layout(names)

@@ -38,7 +38,7 @@ def describe(unstable: Iterable[UnstableSpeed]) -> str:
     return (
         f"the defects are parametrically unstable {where}: at {worst.speed_rpm:g} rpm vibration grows by e every "
         f"{1.0 / worst.growth_rate:.2g} s, without bound; lower the β of the splines, raise dynamics.damping_ratio, or "
-        "leave these speeds out (unstable: warn runs it all the same)"
+        "leave these speeds out (unstable: warn runs it anyway)"
     )
 
 

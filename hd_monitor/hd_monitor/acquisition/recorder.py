@@ -23,7 +23,7 @@ _REPLACED = ("rate", "last_fault")  # of the quality: not counters
 _FAULTS = {
     "not_finite": "are not finite",
     "clipped": "are clipped",
-    "stuck": "did not change while they should",
+    "stuck": "did not change although they should",
     "spikes": "are spikes",
 }
 _SHORTEST_RECORD = 8  # samples

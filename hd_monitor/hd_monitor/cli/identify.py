@@ -54,5 +54,5 @@ def run(arguments: argparse.Namespace) -> int:
             write_text(arguments.yaml, content)
             print(f"parameters: {arguments.yaml}", file=text)
         else:
-            print(f"hd-monitor identify: {arguments.yaml} is not written: there is nothing to put in", file=sys.stderr)
+            print(f"hd-monitor identify: {arguments.yaml} is not written: there is nothing to write", file=sys.stderr)
     return 0

@@ -70,8 +70,8 @@ def run(arguments: argparse.Namespace) -> int:
         case = load_own_case(arguments.params)
         if case.ignored:
             print(
-                f"{arguments.params.name}: ignoring {', '.join(case.ignored)}: they mean nothing to these "
-                "figures; right if others share the file, else check the spelling",
+                f"{arguments.params.name}: ignoring {', '.join(case.ignored)}: not used by these "
+                "figures; correct if others share the file, else check the spelling",
                 file=sys.stderr,
             )
         exhibits = compute(FIGURES, case, arguments.only, tell)

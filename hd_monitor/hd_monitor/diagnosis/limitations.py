@@ -26,10 +26,10 @@ SENTENCES: Mapping[LimitationCode, str] = {
     ),
     LimitationCode.DAMPING_CORRECTED: ("the vibration fits a damping ratio of {fitted:.3f}, not the {given:g} given"),
     LimitationCode.MOTION_STAMPS_LAG: (
-        "the stamps of the joint states lag those of the vibration by {delay_ms:.1f} ms, which is allowed for"
+        "the stamps of the joint states lag those of the vibration by {delay_ms:.1f} ms, which is compensated"
     ),
     LimitationCode.VIBRATION_STAMPS_LAG: (
-        "the stamps of the vibration lag those of the joint states by {delay_ms:.1f} ms, which is allowed for"
+        "the stamps of the vibration lag those of the joint states by {delay_ms:.1f} ms, which is compensated"
     ),
     LimitationCode.TORQUE_TOO_SMALL: (
         "The vibration contradicts the torque given, which seems to be larger: check load.torque or the effort's unit; "
@@ -80,11 +80,11 @@ SENTENCES: Mapping[LimitationCode, str] = {
     ),
     LimitationCode.SEGMENT_UNUSABLE: "The newest motion could not be used: {cause}",
     LimitationCode.NATURAL_FREQUENCY_BEYOND_RATE: (
-        "The natural frequency given, {given_hz:g} Hz, lies beyond what {rate_hz:.0f} samples a second show: sample "
+        "The natural frequency given, {given_hz:g} Hz, is too high for {rate_hz:.0f} samples per second: sample "
         "faster, or correct dynamics.natural_frequency"
     ),
     LimitationCode.LINES_BEYOND_RATE: (
-        "At {speed_rpm:.0f} rpm the lines lie beyond what {rate_hz:.0f} samples a second show: sample faster, or turn "
+        "At {speed_rpm:.0f} rpm the lines are too high for {rate_hz:.0f} samples per second: sample faster, or turn "
         "more slowly"
     ),
     LimitationCode.TRAVEL_TOO_SHORT: (

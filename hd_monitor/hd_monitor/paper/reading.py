@@ -48,7 +48,7 @@ class Reader:
         """Take a list of numbers; none if it is not given."""
         value = self.left.pop(name, ())
         if not isinstance(value, Sequence) or isinstance(value, str):
-            raise ParameterError(f"{self.source}: {name} = {value!r} is not a list of numbers, one a harmonic")
+            raise ParameterError(f"{self.source}: {name} = {value!r} is not a list of numbers, one per harmonic")
         if any(isinstance(v, bool) or not isinstance(v, (int, float)) for v in value):
             raise ParameterError(f"{self.source}: {name} = {value!r} has an entry that is not a number")
         return tuple(float(v) for v in value)

@@ -54,7 +54,7 @@ class JointParameters:
             node.undeclare_parameter(name)
         if strangers:
             node.get_logger().warning(
-                f"ignoring {', '.join(strangers)}: no parameters of this node; right if others share the file, "
+                f"ignoring {', '.join(strangers)}: not parameters of this node; correct if others share the file, "
                 "else check the spelling"
             )
         self.settings = split_joints(given)
@@ -113,7 +113,7 @@ def check_names(joints: Sequence[str]) -> None:
         elif word[0].isdigit():
             word = f"joint_{word}"
         if joint in groups or not joint:
-            trouble = "which cannot stand before a parameter's name"
+            trouble = "which cannot precede a parameter's name"
         elif len(joints) > 1 and not _TOPIC_WORD.fullmatch(joint):
             trouble = "which cannot be part of a topic's name"
         else:

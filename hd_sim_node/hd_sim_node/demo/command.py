@@ -27,7 +27,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Add the command's arguments."""
     parser.formatter_class = argparse.RawDescriptionHelpFormatter
     parser.description = (
-        "Starts hd_sim_node (a rig with the defect of your choice) and hd_monitor_node as processes of their own,\n"
+        "Starts hd_sim_node (a rig with the defect of your choice) and hd_monitor_node as separate processes,\n"
         "which talk over DDS on this machine only, and shows what the monitor says on /diagnostics while the rig\n"
         "dwells at 200, 300 … 3000 rpm. Ends with status 0 if the monitor names what was simulated, 1 if not."
     )

@@ -15,7 +15,7 @@ EDGES.flags.writeable = False
 _CENTRES = np.concatenate([[0.5], np.sqrt(EDGES[1:-1] * EDGES[2:])])
 _FREEDOM = 60.0  # degrees of freedom that a band needs on its own; neighbours are pooled below that
 _LEAST_SHARE = 0.1  # of the rows' noise that a fit leaves
-_LOWEST_DENSITY = 1e-20  # of the whole power: noise-free data have a floor all the same
+_LOWEST_DENSITY = 1e-20  # of the whole power: even noise-free data have a floor
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -173,7 +173,7 @@ class SegmentBuilder:
         steps = self._substeps(line, step)
         if steps > MOST_SUBSTEPS:
             raise ParameterError(
-                f"at {top_speed:.3g} rad/s and {1.0 / step:.4g} samples a second the lines and the natural frequency, "
+                f"at {top_speed:.3g} rad/s and {1.0 / step:.4g} samples per second the lines and natural frequency, "
                 f"{self.natural_frequency:g} Hz, would need {steps} integration steps a sample, above {MOST_SUBSTEPS}: "
                 "such a signal shows nothing of them; check that positions are in rad on the output side, or sample "
                 "faster"
