@@ -109,11 +109,11 @@ class LineResidual:
         )
 
     def plus(
-        self, evidence: LinearisedSegment, covariance: FloatArray, floor: NoiseFloor, reducer: Reducer
+        self, item: LinearisedSegment, covariance: FloatArray, floor: NoiseFloor, reducer: Reducer
     ) -> "LineResidual":
         """Add a segment; the covariance is that of the unknowns fitted, 0 for the others."""
-        segment, harmonics = evidence.segment, self.weight.size
-        line = evidence.linearisation
+        segment, harmonics = item.segment, self.weight.size
+        line = item.linearisation
         signals = np.stack([line.residual, line.predicted]) * segment.used
         demodulated = (signals - (signals @ segment.slow) @ segment.slow.T).astype(np.complex128)
         middle = sum(reducer.output_orders) / 2.0
@@ -139,7 +139,7 @@ class LineResidual:
             predicted=predicted,
             weight=weight,
             travel=self.travel + segment.travel,
-            overdispersion=self.overdispersion.plus(evidence.equations, covariance),
+            overdispersion=self.overdispersion.plus(item.equations, covariance),
         )
 
     def faded(self, keep: float) -> "LineResidual":

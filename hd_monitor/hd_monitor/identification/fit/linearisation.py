@@ -78,7 +78,7 @@ class Predictor:
 
         # From the quasi-static wind-up, and the two free vibrations
         inputs, force = np.zeros((2, oscillator.steps, 3)), np.zeros((oscillator.steps + 1, 3))
-        inputs[..., 0], force[:, 0] = gauss.drive, nodes.drive
+        inputs[..., 0], force[:, 0] = gauss.excitation, nodes.excitation
         wound = force[0, 0] / spring[0, 0]
         base = oscillator.respond(inputs, initial=[[wound, 1.0, 0.0], [0.0, 0.0, omega]])
         motion = force - damping * base.velocity - spring * base.displacement
@@ -109,7 +109,7 @@ class _Along:
         self._torque = math.exp(values[unknowns.torque]) / predictor.given.inertia * path.torque
         self.stiffness = np.asarray(1.0 + self._lines @ self._beta)
         inertial = values[unknowns.inertia] * path.acceleration
-        self.drive = np.asarray(self._torque + self._load_unit * (path.loads @ values[unknowns.load]) - inertial)
+        self.excitation = np.asarray(self._torque + self._load_unit * (path.loads @ values[unknowns.load]) - inertial)
 
     def forcing(self, theta: FloatArray, theta_dot: FloatArray) -> FloatArray:
         """Inputs [rad/s² per unit of each unknown] where θ and θ' are as given, shape (..., unknowns)."""

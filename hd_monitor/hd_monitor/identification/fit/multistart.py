@@ -39,14 +39,17 @@ def newest_segments(segments: Sequence[Segment]) -> list[Segment]:
     return newest
 
 
+def load_start(unknowns: Unknowns, values: FloatArray, load: complex) -> FloatArray:
+    """Return values without any defects, and with a load twice per output revolution."""
+    start = values * ~unknowns.mask(unknowns.stiffness, unknowns.load)
+    start[unknowns.load_line(2)] = load.real, load.imag
+    return start
+
+
 def load_starts(unknowns: Unknowns, values: FloatArray, *, thorough: bool) -> list[FloatArray]:
     """Return the best values so far, and starts for the load, whose phase has local minima: all of them, or a few."""
-    starts = [values]
-    for load in (0.0, *(START_LOADS if thorough else START_LOADS[::2])):
-        start = values * ~unknowns.mask(unknowns.stiffness, unknowns.load)
-        start[unknowns.load_line(2)] = load.real, load.imag
-        starts.append(start)
-    return starts
+    loads = (0.0, *(START_LOADS if thorough else START_LOADS[::2]))
+    return [values, *(load_start(unknowns, values, load) for load in loads)]
 
 
 def other_starts(unknowns: Unknowns, *, frequency: bool, delay: bool, thorough: bool) -> list[FloatArray]:

@@ -1,4 +1,4 @@
-"""Evidence as normal equations: what a segment says about the unknowns around a point, in sums that add up."""
+"""What a segment says about the unknowns around a point, as normal equations: sums that add up."""
 
 from dataclasses import dataclass, replace
 
@@ -37,7 +37,7 @@ class NormalEquations:
         return replace(self, score=self.score - change, cost=cost)
 
     def __add__(self, other: "NormalEquations") -> "NormalEquations":
-        """Pool two pieces of evidence about the same point."""
+        """Pool what is known about the same point from two sources."""
         return NormalEquations(
             information=self.information + other.information,
             score=self.score + other.score,

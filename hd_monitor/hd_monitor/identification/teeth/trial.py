@@ -11,7 +11,7 @@ from ...arrays import FloatArray
 from ...errors import ParameterError
 from ...reducer import Reducer
 from ..fit.gauss_newton import Fit, Problem
-from ..fit.multistart import START_LOADS, signal_level
+from ..fit.multistart import START_LOADS, load_start, signal_level
 from ..segment.segment import Segment, SegmentBuilder
 
 LONGEST = 1.5
@@ -37,13 +37,13 @@ class ToothTrial:
         Recent motion as prepared for the fit with the given teeth; its oldest and its newest part are used.
     values : ndarray, shape (unknowns,)
         Best values with the teeth given.
-    inertial : bool
-        Whether the sensor also feels gravity.
+    builder : SegmentBuilder
+        Of the segments in `problem`.
     """
 
     problem: Problem
     values: FloatArray
-    inertial: bool = False
+    builder: SegmentBuilder
 
     def best(self, given: Reducer, others: Sequence[Reducer]) -> Reducer | None:
         """Return the one of some reducers that explains the motion far better than the given one; None if none does.
@@ -67,31 +67,19 @@ class ToothTrial:
 
     def _fit(self, reducer: Reducer, problem: Problem, start: FloatArray | None = None) -> Fit | None:
         """Fit teeth from a start, or without defects from no load and from one; None where that is not possible."""
-        unknowns, given = problem.predictor.unknowns, problem.predictor.given
-        builder = SegmentBuilder(
-            reducer=reducer,
-            harmonics=unknowns.harmonics,
-            load_orders=unknowns.load_orders,
-            natural_frequency=given.natural_frequency,
-            inertial=self.inertial,
-            keep_tones=True,  # at one speed they may be these teeth's lines
-        )
+        # at one speed foreign tones may be these teeth's lines
+        builder = replace(self.builder, reducer=reducer, keep_tones=True)
         try:
             segments = [builder.build([record], None) for record in _records(problem.segments)]
             own = replace(problem, segments=segments, floor=signal_level(segments))
-            return own.solve(start, rounds=_ROUNDS) if start is not None else self._best_fit(own)
+            if start is not None:
+                return own.solve(start, rounds=_ROUNDS)
+            u = problem.predictor.unknowns
+            healthy = np.where(u.mask(u.torque), self.values, 0.0)
+            starts = [load_start(u, healthy, load) for load in (0.0, START_LOADS[0])]
+            return own.multistart(starts, rounds=_ROUNDS)[1]
         except (ParameterError, FloatingPointError, np.linalg.LinAlgError):
             return None  # these teeth's lines are too fast for the sampling rate, or nothing fits
-
-    def _best_fit(self, problem: Problem) -> Fit:
-        u = problem.predictor.unknowns
-        starts = []
-        for load in (0.0, START_LOADS[0]):
-            start = u.zero()
-            start[u.torque] = self.values[u.torque]
-            start[u.load_line(2)] = load.real, load.imag
-            starts.append(start)
-        return problem.multistart(starts, rounds=_ROUNDS)[1]
 
 
 def _records(segments: Sequence[Segment]) -> list[Record]:

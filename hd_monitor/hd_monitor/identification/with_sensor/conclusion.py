@@ -19,25 +19,15 @@ from .context import Context
 from .line_amplitudes import measure_lines
 from .state import State
 
-WELL_KNOWN = 0.02
-"""Standard deviation of the indexes over the larger of index and warn limit that satisfies."""
-
 UNSEEN = 3.0
 """Amplitude wrongly taken for defects, over that left at the lines: the unknowns follow what they can of anything."""
-
-
-def sureness(result: Identification, warn_index: float) -> float:
-    """Standard deviation of the indexes that satisfies, over what they have; 0 where no part may be named."""
-    if result.blockers:
-        return 0.0
-    return WELL_KNOWN * max(warn_index, *result.index) / max(*result.index_std, 1e-12)
 
 
 def conclude(context: Context, state: State, fit: Fit) -> Identification:
     """Pack the result of a state whose newest fit is given."""
     u, reducer, residual, coverage = context.unknowns, context.settings.reducer, state.residual, state.coverage
     assert state.floor is not None
-    predictor, values, information = context.predictor(state), fit.values, context.prior + state.information
+    predictor, values, information = context.predictor(state), fit.values, context.known(state)
     inflation = max(residual.inflation(coverage.span), residual.overdispersion.inflation)
     noise = inflation * information.covariance(state.active)
     systematic = _systematic(u, values, residual, coverage.span)

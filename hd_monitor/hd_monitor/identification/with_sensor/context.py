@@ -1,9 +1,12 @@
-"""What an estimation is given and never changes: settings, unknowns, prior; and the fits that follow from a state."""
+"""What an estimation is given and never changes: settings, unknowns, prior; and the segments and fits made with it."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
+import numpy as np
+
+from ...acquisition.record import Record
 from ...model.parameters import Dynamics
 from ...settings import JointSettings
 from ..checks.residual import LineResidual
@@ -13,9 +16,13 @@ from ..fit.linearisation import Predictor
 from ..fit.multistart import signal_level
 from ..fit.noise import NoiseFloor
 from ..fit.unknowns import TORQUE_LINES, Unknowns
-from ..segment.preparation import Preparation
-from ..segment.segment import Segment
-from .state import State
+from ..segment.segment import Segment, SegmentBuilder
+from .state import Setup, State
+
+NOMINAL_INDEX = 0.05
+"""Of the larger spline, where an unknown torque leaves the scale open."""
+
+_TRIAL_WIND_UP = 1e-3  # rad
 
 
 class Unexplained(NamedTuple):
@@ -35,34 +42,67 @@ class Context:
     unknowns : Unknowns
     prior : Information
         What is known of the unknowns before any data.
-    preparation : Preparation
+    builder : SegmentBuilder
     """
 
     settings: JointSettings
     unknowns: Unknowns
     prior: Information
-    preparation: Preparation
+    builder: SegmentBuilder
 
     @classmethod
     def of(cls, settings: JointSettings) -> "Context":
         """Return the context that a joint's settings make."""
         unknowns = Unknowns(harmonics=settings.analysis.harmonics, load_orders=tuple(TORQUE_LINES))
-        prior = Information.gaussian(unknowns.given_std())
-        return cls(
-            settings=settings,
-            unknowns=unknowns,
-            prior=prior,
-            preparation=Preparation(settings, unknowns, prior),
+        builder = SegmentBuilder(
+            reducer=settings.reducer,
+            harmonics=unknowns.harmonics,
+            load_orders=unknowns.load_orders,
+            natural_frequency=settings.dynamics.natural_frequency,
+            inertial=settings.vibration.gravity,
         )
+        prior = Information.gaussian(unknowns.given_std())
+        return cls(settings=settings, unknowns=unknowns, prior=prior, builder=builder)
 
     @property
     def given(self) -> Dynamics:
         """The oscillator as the parameters have it."""
         return self.settings.dynamics
 
+    @property
+    def given_torque(self) -> float:
+        """Torque [N·m] where none is measured, as the parameters have it; 0 if they have none."""
+        load = self.settings.load
+        return load.torque if load.source in ("auto", "parameter") else 0.0
+
+    def segment(self, records: Sequence[Record], setup: Setup) -> tuple[Segment, Setup]:
+        """Make a segment of records that follow each other; a nominal torque replaces an unknown one.
+
+        Raises
+        ------
+        ParameterError
+            If the sampling rate is far too low for the lines and the natural frequency.
+        """
+        torque = None
+        if not np.isfinite(records[0].torque).all():
+            torque = self.given_torque or setup.nominal_torque
+            if torque is None:
+                torque = self._find_nominal(records)
+                setup = replace(setup, nominal_torque=torque)
+        segment = self.builder.build(records, torque)
+        if not setup.reference_torque:
+            level = float(np.sqrt(np.mean(segment.at_steps.torque**2)))
+            kept_from_zero = max(level, 0.1 * abs(self.given_torque), 1e-9 * self.given.stiffness)
+            setup = replace(setup, reference_torque=kept_from_zero)
+        return (segment if setup.mounting > 0.0 else segment.mirrored()), setup
+
     def predictor(self, state: State) -> Predictor:
         """Predictor in the units of a state."""
-        return Predictor(unknowns=self.unknowns, given=self.given, reference_torque=state.setup.reference_torque)
+        return self._predictor(state.setup.reference_torque)
+
+    def known(self, state: State) -> Information:
+        """Return all that is known of the unknowns: what was given, and what a state has learnt."""
+        return self.prior + state.information
 
     def problem(self, state: State, segments: Sequence[Segment], prior: Information) -> Problem:
         """Return the problem of explaining some segments with what a state allows."""
@@ -87,3 +127,21 @@ class Context:
         for item in fit.segments:
             residual = residual.plus(item, fit.covariance, floor, self.settings.reducer)
         return Unexplained(floor, residual)
+
+    def _predictor(self, torque: float) -> Predictor:
+        return Predictor(unknowns=self.unknowns, given=self.given, reference_torque=torque)
+
+    def _find_nominal(self, records: Sequence[Record]) -> float:
+        """Torque [N·m] at which the lines would speak of a defect of common size."""
+        unit = self.given.stiffness * _TRIAL_WIND_UP
+        u, segment = self.unknowns, self.builder.build(records, unit)
+        problem = Problem(
+            segments=[segment],
+            predictor=self._predictor(unit),
+            prior=self.prior,
+            floor=signal_level([segment]),
+            active=u.mask(u.stiffness),
+        )
+        step = problem.at(u.zero()).step
+        size = max(float(np.linalg.norm(step[part])) for part in (u.circular_spline, u.flexspline))
+        return unit * max(size, 1e-6) / NOMINAL_INDEX

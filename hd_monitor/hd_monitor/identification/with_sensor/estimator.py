@@ -16,11 +16,14 @@ from ..fit.multistart import multistart_newest
 from ..fit.score_test import score_tests
 from ..teeth.trial import ToothTrial
 from ..teeth.watch import ToothWatch
-from .conclusion import conclude, sureness
+from .conclusion import conclude
 from .context import Context, Unexplained
 from .schedule import POOR, SECOND_LOOK
 from .search import look_elsewhere, restart, turn_sensor
 from .state import WINDOW, State
+
+WELL_KNOWN = 0.02
+"""Standard deviation of the indexes over the larger of index and warn limit that satisfies."""
 
 FREQUENCY_KNOWN, DAMPING_KNOWN = 0.005, 0.05
 """Standard deviations of ln fn and ln ζ below which data know them better than the parameters do."""
@@ -45,10 +48,16 @@ class Estimator:
         return State.initial(self._context.unknowns)
 
     def sureness(self, state: State) -> float:
-        """How well the indexes are known: from 1 on, more data would add nothing of interest."""
-        if state.seconds < WINDOW or state.result is None:
+        """How well the indexes are known: from 1 on, more data would add nothing of interest.
+
+        It is `WELL_KNOWN` over the standard deviation of the indexes, relative to the larger of index and warn limit;
+        0 where no part may be named.
+        """
+        result = state.result
+        if state.seconds < WINDOW or result is None or result.blockers:
             return 0.0
-        return sureness(state.result, self._context.settings.diagnosis.warn_index)
+        scale = max(self._context.settings.diagnosis.warn_index, *result.index)
+        return WELL_KNOWN * scale / max(*result.index_std, 1e-12)
 
     def aged(self, state: State, duration: float) -> State:
         """Return the state after `duration` [s] of motion that was not looked at."""
@@ -67,7 +76,7 @@ class Estimator:
 
     def _updated(self, state: State, records: Sequence[Record]) -> State:
         context, u = self._context, self._context.unknowns
-        segment, setup = context.preparation.build(records, state.setup)
+        segment, setup = context.segment(records, state.setup)
         values = segment.acceleration[segment.used]
         if values.size < 4 * u.size:
             return state
@@ -102,9 +111,7 @@ class Estimator:
         young = state.seconds <= WINDOW
         if young and state.seconds >= 2.0 * state.schedule.restarted:
             return self._fit_all(state, state.values)
-        fit = context.problem(state, state.recent[-1:], context.prior + state.information).solve(
-            state.values, rounds=_UPDATE_ROUNDS
-        )
+        fit = context.problem(state, state.recent[-1:], context.known(state)).solve(state.values, rounds=_UPDATE_ROUNDS)
         change = fit.values - state.values
         if young and float(change @ state.information.matrix @ change) > _MOVED**2:
             return self._fit_all(state, fit.values)
@@ -137,7 +144,7 @@ class Estimator:
         candidates = [u.delay, u.frequency, u.damping] if context.settings.refine_dynamics else [u.delay]
         known = {u.frequency: FREQUENCY_KNOWN, u.damping: DAMPING_KNOWN} if state.coverage.speed_varies else {}
         for _ in candidates:
-            information = (context.prior + state.information).plus(fit.equations, fit.values)
+            information = context.known(state).plus(fit.equations, fit.values)
             waiting = [place for place in candidates if not state.active[place]]
             tests = score_tests(waiting, information, fit.values, state.active, u.given_std())
             wrong = [
@@ -150,15 +157,13 @@ class Estimator:
             worst = max(wrong, key=lambda place: tests[place].significance)
             state = replace(state, active=state.active | u.mask(worst))
             segments = [item.segment for item in fit.segments]
-            fit = context.problem(state, segments, context.prior + state.information).solve(fit.values, rounds=_ROUNDS)
+            fit = context.problem(state, segments, context.known(state)).solve(fit.values, rounds=_ROUNDS)
         return state, fit
 
     def _question_teeth(self, state: State, fit: Fit) -> ToothWatch:
         """Ask whether other tooth numbers than those given explain the recent motion better."""
         context = self._context
-        trial = ToothTrial(
-            problem=context.problem_of_all(state), values=fit.values, inertial=context.preparation.inertial
-        )
+        trial = ToothTrial(problem=context.problem_of_all(state), values=fit.values, builder=context.builder)
         return state.teeth.after(fit, context.given, anew=state.schedule.restarted == state.seconds).look(
             context.settings.reducer,
             context.unknowns.harmonics,

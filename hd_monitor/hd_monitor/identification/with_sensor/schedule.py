@@ -7,7 +7,7 @@ POOR = 1.5
 """Inflation of the variances, by what the fit leaves at the lines, from which other solutions are sought."""
 
 SECOND_LOOK = 3.5
-"""Motion [s] at which the exploration made on the first second or so is repeated, if in doubt."""
+"""Motion [s] at which the multistart on the first second or so is repeated, if in doubt."""
 
 _EARLY = 4.0  # s of poor fits up to which such a look is soon followed by another one
 _SOON, _LATE = 2.0, 6.0  # factors by which the time of poor fits grows between such looks, at first and later

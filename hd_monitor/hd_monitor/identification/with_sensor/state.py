@@ -11,13 +11,31 @@ from ..fit.information import Information
 from ..fit.noise import NoiseFloor
 from ..fit.unknowns import Unknowns
 from ..result import Identification
-from ..segment.preparation import Setup
 from ..segment.segment import Segment
 from ..teeth.watch import ToothWatch
 from .schedule import Schedule
 
 WINDOW = 16.0
 """Motion [s] that is kept to be fitted again as a whole; from then on each segment is used once."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Setup:
+    """What the data have said of torque and sensor.
+
+    Attributes
+    ----------
+    nominal_torque : float or None
+        Torque [N·m] used in place of an unknown one; None as long as the torque is known.
+    reference_torque : float
+        Torque [N·m] in whose unit load fluctuations are expressed; 0 before the first segment.
+    mounting : float
+        1, or -1 for a sensor whose sign is against that of the torque.
+    """
+
+    nominal_torque: float | None = None
+    reference_torque: float = 0.0
+    mounting: float = 1.0
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)

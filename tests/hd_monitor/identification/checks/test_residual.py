@@ -1,4 +1,4 @@
-"""Misfit: nothing is made of pure noise, and what the noise floor does not show is owned up to."""
+"""Misfit: nothing is made of pure noise, what the noise floor does not show widens the intervals."""
 
 import numpy as np
 import pytest
@@ -23,15 +23,15 @@ PREDICTOR = Predictor(unknowns=UNKNOWNS, given=Dynamics(), reference_torque=TORQ
 FITTED = UNKNOWNS.mask(UNKNOWNS.stiffness, UNKNOWNS.load)
 TRUTH = UNKNOWNS.zero()
 TRUTH[UNKNOWNS.stiffness] = [0.03, 0.01, 0.0, 0.02, 0.05, 0.0, 0.01, -0.02]
-SECONDS, SEGMENTES = 1.0, 8
-TIMES = np.arange(int(SECONDS * SEGMENTES * RATE)) / RATE
+SECONDS, SEGMENTS = 1.0, 8
+TIMES = np.arange(int(SECONDS * SEGMENTS * RATE)) / RATE
 SPEED = 900.0 * 2.0 * np.pi / 60.0 / 80.0  # rad/s: one and a half output turns; lines at 30 and 60 Hz
 ANGLE = SPEED * TIMES
 
 
 def segments(acceleration):
     parts = []
-    for values, angle in zip(np.split(acceleration, SEGMENTES), np.split(ANGLE, SEGMENTES), strict=True):
+    for values, angle in zip(np.split(acceleration, SEGMENTS), np.split(ANGLE, SEGMENTS), strict=True):
         record = Record(
             start=0.0,
             period=1.0 / RATE,
@@ -75,10 +75,10 @@ def of_noise(clean):
     return [residual(clean + noise(seed)) for seed in range(40)]
 
 
-def test_the_scatter_of_noise_is_what_noise_leads_to_expect(of_noise):
+def test_noise_disperses_the_segments_no_more_than_expected(of_noise):
     squares, freedom = (sum(getattr(rest.overdispersion, name) for rest in of_noise) for name in ("squares", "freedom"))
     # each of the 8 segments is asked 10 unknowns, and all together have fixed 10: 2800 degrees of freedom, 2.7 %
-    assert freedom == pytest.approx(40 * 10 * (SEGMENTES - 1), rel=0.02)
+    assert freedom == pytest.approx(40 * 10 * (SEGMENTS - 1), rel=0.02)
     assert squares / freedom == pytest.approx(1.0, abs=0.08)
 
 
@@ -89,15 +89,15 @@ def test_pure_noise_is_hardly_ever_inflated(of_noise):
     assert 0.4 < np.mean([rest.misfit for rest in of_noise]) < 1.0
 
 
-def test_noise_that_comes_with_the_vibration_scatters_the_segments(clean):
+def test_noise_that_comes_with_the_vibration_overdisperses_the_segments(clean):
     """Three per cent of slow noise on the amplitude: a quarter octave's floor would hardly see it."""
     rng = np.random.default_rng(7)
-    slow = np.repeat(rng.standard_normal(4 * SEGMENTES), TIMES.size // (4 * SEGMENTES))
+    slow = np.repeat(rng.standard_normal(4 * SEGMENTS), TIMES.size // (4 * SEGMENTS))
     rest = residual(clean * (1.0 + 0.03 * slow) + noise(8))
     assert rest.overdispersion.inflation > 2.0
 
 
-def test_a_line_that_the_model_lacks_is_owned_up_to(clean):
+def test_a_line_that_the_model_lacks_widens_the_intervals(clean):
     foreign = 0.3 * np.cos((REDUCER.output_orders.flexspline + 1.0) * ANGLE)
     rest = residual(clean + foreign + noise(9))
     # beside one pair's 7 orders of 2 x 7, with an amplitude of 0.3 over 0.2 · √(2 / 3200) of noise
@@ -106,7 +106,7 @@ def test_a_line_that_the_model_lacks_is_owned_up_to(clean):
     assert rest.unexplained == pytest.approx(np.sqrt(power), rel=0.5)
 
 
-def test_fading_keeps_the_ratio_of_scatter_to_expectation():
+def test_fading_keeps_the_ratio_of_squares_to_expectation():
     overdispersion = Overdispersion(squares=300.0, freedom=100.0)
     faded = overdispersion.faded(0.25)
     assert faded.squares / faded.freedom == pytest.approx(3.0)

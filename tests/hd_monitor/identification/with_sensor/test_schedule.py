@@ -20,7 +20,7 @@ def test_a_good_fit_needs_no_look():
     assert looks(lambda now: 1.0) == []
 
 
-def test_a_doubtful_first_exploration_is_repeated_once():
+def test_a_doubtful_first_multistart_is_repeated_once():
     times = looks(lambda now: 0.5 * (1.0 + POOR))
     assert len(times) == 1
     assert times[0] >= SECOND_LOOK
