@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...arrays import BoolArray, ComplexArray, FloatArray
+from ...arrays import ComplexArray, FloatArray
 from ...interpolation import cubics
 from ...model.oscillator import GAUSS_OFFSETS
 from ...reducer import WAVE_GENERATOR_LOBES, Reducer
@@ -56,14 +56,9 @@ class Path:
         if delay == 0.0:
             return self.lines
         shift = np.multiply.outer(self.speed * delay, self.rates)
-        cosine, other = self.quadrature(self.lines)
-        return np.asarray(np.cos(shift) * self.lines + np.sin(shift) * np.where(cosine, other, -other))
-
-    def quadrature(self, lines: FloatArray) -> tuple[BoolArray, FloatArray]:
-        """Mark the columns that hold cosines, and return the columns with cos and -sin of each angle exchanged."""
-        harmonics = self.rates.size // 4
-        swapped = lines.reshape(*lines.shape[:-1], 2, 2, harmonics)[..., ::-1, :].reshape(lines.shape)
-        return np.tile(np.repeat([True, False], harmonics), 2), swapped
+        lines = self.lines.reshape(*self.lines.shape[:-1], 2, 2, -1)
+        turned = np.concatenate([lines[..., 1:, :], -lines[..., :1, :]], axis=-2)
+        return np.asarray(np.cos(shift) * self.lines + np.sin(shift) * turned.reshape(self.lines.shape))
 
 
 def paths_along(

@@ -97,7 +97,7 @@ class SensorlessIdentifier:
             blockers = blockers_of_input(
                 self._settings.input.source, messages=self._messages, usable=self._usable, too_fast=self._too_fast
             )
-            return _nothing(blockers) if blockers else None
+            return Identification.none(blockers, relative=True) if blockers else None
         return self._latest
 
     def finish(self) -> Identification | None:
@@ -117,7 +117,8 @@ class SensorlessIdentifier:
         self._directions = tuple(DirectionEvidence.of(group, settings.diagnosis.both_ratio) for group in groups)
         if not groups:
             still = all(np.ptp(segment.values) == 0.0 for segment in self._pool.segments)
-            return _nothing((blocker(LimitationCode.SIGNAL_CONSTANT),)) if still else self._latest
+            constant = (blocker(LimitationCode.SIGNAL_CONSTANT),)
+            return Identification.none(constant, relative=True) if still else self._latest
         fits = [group.fit for group in groups]
         mean, covariance = _mean_amplitudes(fits)
         total = float(np.hypot(*mean))
@@ -171,20 +172,6 @@ class SensorlessIdentifier:
     def _too_fast(self) -> float:
         """Part of the motion that was too fast for the rate of the joint states."""
         return self._cutter.too_fast / self._cutter.turning if self._cutter.turning > 0.0 else 0.0
-
-
-def _nothing(limitations: tuple[Limitation, ...]) -> Identification:
-    """Return a result that only says why there is none."""
-    nothing = np.zeros(0, dtype=np.complex128)
-    return Identification(
-        circular_spline=nothing,
-        flexspline=nothing,
-        index=LinePair(0.0, 0.0),
-        index_std=LinePair(float("inf"), float("inf")),
-        relative=True,
-        limitations=limitations,
-        load_fluctuation=math.nan,
-    )
 
 
 def _mean_amplitudes(fits: Sequence[LineFit]) -> tuple[FloatArray, FloatArray]:

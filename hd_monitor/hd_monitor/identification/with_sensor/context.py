@@ -132,7 +132,7 @@ class Context:
         return Predictor(unknowns=self.unknowns, given=self.given, reference_torque=torque)
 
     def _find_nominal(self, records: Sequence[Record]) -> float:
-        """Torque [N·m] at which the lines would speak of a defect of common size."""
+        """Torque [N·m] at which the lines would indicate a defect of typical size."""
         unit = self.given.stiffness * _TRIAL_WIND_UP
         u, segment = self.unknowns, self.builder.build(records, unit)
         problem = Problem(
