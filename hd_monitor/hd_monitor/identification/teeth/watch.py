@@ -21,7 +21,7 @@ LEAD = 35.0
 """Log evidence by which other teeth must lead: far above chance, for lines that change with the speed are none that the
 regression knows, and with those the right teeth were seen to trail others by up to 29."""
 
-GROWTH = 2.0
+GROWTH = 1.5
 """Factor by which motion must grow before the same candidates are compared once more."""
 
 APART = 1.0
