@@ -1,7 +1,6 @@
 """The identified quantities as numbers with standard deviations and confidence intervals."""
 
 import math
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -22,8 +21,7 @@ _CLEAR = 20.0
 _ONE = Unknowns(harmonics=1, load_orders=())
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Estimate:
+class Estimate(NamedTuple):
     """A value, its standard deviation and its 95 % confidence interval, in the value's unit; NaN where unknown."""
 
     value: float
@@ -35,32 +33,25 @@ class Estimate:
     def gaussian(cls, value: float, std: float) -> "Estimate":
         """Estimate of a quantity that is never negative, with a Gaussian error."""
         low = value - _WIDTH * std
-        return cls(value=value, std=std, low=0.0 if low < 0.0 else low, high=value + _WIDTH * std)
+        return cls(value, std, 0.0 if low < 0.0 else low, value + _WIDTH * std)
 
     @classmethod
     def lognormal(cls, value: float, std: float) -> "Estimate":
         """Estimate whose logarithm has a Gaussian error, as fn and ζ."""
         factor = math.exp(_WIDTH * std / value) if value > 0.0 else math.nan
-        return cls(value=value, std=std, low=value / factor, high=value * factor)
+        return cls(value, std, value / factor, value * factor)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Harmonic:
-    """One β of one spline.
-
-    Attributes
-    ----------
-    k : int
-    beta : Estimate
-        Magnitude, a fraction of the mean stiffness, bias from noise removed.
-    phase, phase_std : float
-        Phase where the output angle is 0, and its standard deviation [rad]; NaN where noise hides it.
-    """
+class Harmonic(NamedTuple):
+    """One β of one spline."""
 
     k: int
     beta: Estimate
+    """Magnitude, a fraction of the mean stiffness, bias from noise removed."""
     phase: float
+    """Where the output angle is 0 [rad]; NaN where noise hides it."""
     phase_std: float
+    """[rad]"""
 
 
 class BothSplines(NamedTuple):
@@ -80,14 +71,7 @@ def harmonics(found: Identification) -> BothSplines:
     return BothSplines(*parts)
 
 
-class Interval(NamedTuple):
-    """Bounds of a confidence interval."""
-
-    low: float
-    high: float
-
-
-def magnitude_interval(size: float, std: float) -> Interval:
+def magnitude_interval(size: float, std: float) -> tuple[float, float]:
     """Confidence interval of the magnitude of a phasor, exact where its two parts have equal deviations.
 
     Parameters
@@ -104,10 +88,10 @@ def magnitude_interval(size: float, std: float) -> Interval:
     would hold the truth too seldom.
     """
     if not std > 0.0:
-        return Interval(size, size)
+        return size, size
     ratio = size / std
     if not ratio < _CLEAR:
-        return Interval(size - _WIDTH * std, size + _WIDTH * std)
+        return size - _WIDTH * std, size + _WIDTH * std
 
     def bound(share: float) -> float:
         def excess(true: float) -> float:
@@ -115,13 +99,13 @@ def magnitude_interval(size: float, std: float) -> Interval:
 
         return float(brentq(excess, 0.0, ratio + 10.0)) * std if excess(0.0) > 0.0 else 0.0
 
-    return Interval(bound(0.5 + 0.5 * CONFIDENCE), max(bound(0.5 - 0.5 * CONFIDENCE), std))
+    return bound(0.5 + 0.5 * CONFIDENCE), max(bound(0.5 - 0.5 * CONFIDENCE), std)
 
 
 def _harmonic(k: int, phasor: complex, covariance: FloatArray | None) -> Harmonic:
+    phase = math.atan2(phasor.imag, phasor.real)
     if covariance is None:
-        unknown = Estimate.gaussian(abs(phasor), math.nan)
-        return Harmonic(k=k, beta=unknown, phase=math.atan2(phasor.imag, phasor.real), phase_std=math.nan)
+        return Harmonic(k, Estimate.gaussian(abs(phasor), math.nan), phase, math.nan)
     values, whole = _ONE.zero(), np.zeros((_ONE.size, _ONE.size))
     values[_ONE.circular_spline] = phasor.real, phasor.imag
     whole[_ONE.circular_spline, _ONE.circular_spline] = covariance
@@ -129,15 +113,11 @@ def _harmonic(k: int, phasor: complex, covariance: FloatArray | None) -> Harmoni
     size = abs(phasor)
     along, across = np.array([phasor.real, phasor.imag]), np.array([-phasor.imag, phasor.real])
     radial = math.sqrt(float(along @ covariance @ along)) / size if size > 0.0 else 0.0
-    beta = Estimate(
-        value=magnitude.index.circular_spline,
-        std=magnitude.std.circular_spline,
-        **magnitude_interval(size, radial)._asdict(),
-    )
+    beta = Estimate(magnitude.index.circular_spline, magnitude.std.circular_spline, *magnitude_interval(size, radial))
     std = math.sqrt(float(across @ covariance @ across)) / size**2 if size > 0.0 else math.inf
     if not std < 0.5:  # beyond, the error of a phase is no longer Gaussian, and soon it says nothing
-        return Harmonic(k=k, beta=beta, phase=math.nan, phase_std=math.nan)
-    return Harmonic(k=k, beta=beta, phase=math.atan2(phasor.imag, phasor.real), phase_std=std)
+        phase = std = math.nan
+    return Harmonic(k, beta, phase, std)
 
 
 def dynamics(found: Identification) -> dict[str, Estimate]:

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import asdict, fields
+from dataclasses import fields
 from typing import Any
 
 import yaml
@@ -77,8 +77,8 @@ def joint_entry(joint: JointIdentification) -> dict[str, Any]:
     if not settings.sensorless:
         for name, estimate in numbers.dynamics(found).items():
             given = getattr(settings.dynamics, name)
-            entry[name] = asdict(estimate) | {"given": given, "identified": estimate.std > 0.0}
-        entry["load_fluctuation"] = asdict(Estimate.gaussian(found.load_fluctuation, found.load_fluctuation_std))
+            entry[name] = estimate._asdict() | {"given": given, "identified": estimate.std > 0.0}
+        entry["load_fluctuation"] = Estimate.gaussian(found.load_fluctuation, found.load_fluctuation_std)._asdict()
     return dict(plain(entry))
 
 
@@ -145,9 +145,9 @@ def _why_not(joint: JointIdentification) -> str:
 
 def _spline(index: float, std: float, betas: Sequence[Harmonic]) -> dict[str, Any]:
     return {
-        "index": asdict(Estimate.gaussian(index, std)),
+        "index": Estimate.gaussian(index, std)._asdict(),
         "harmonics": [
-            {"k": h.k, "beta": asdict(h.beta), "phase_rad": h.phase, "phase_std_rad": h.phase_std} for h in betas
+            {"k": h.k, "beta": h.beta._asdict(), "phase_rad": h.phase, "phase_std_rad": h.phase_std} for h in betas
         ],
     }
 

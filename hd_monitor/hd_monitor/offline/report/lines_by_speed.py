@@ -11,6 +11,7 @@ from ...reducer import LinePair
 from .speed_bins import SpeedBins
 
 _WORST_CONDITION = 12.0  # about a third of the travel that separates the first pair by Fourier means
+_ONES, _SPEED = -3, -2  # columns behind those of the lines; the signal is the last
 _FASTEST_CHANGE = 1.5  # bins a record: faster, the vibration does not follow the speed
 
 
@@ -21,17 +22,6 @@ class SpeedLines(NamedTuple):
     k: int
     amplitude: LinePair
     std: LinePair
-
-
-class _Sums(NamedTuple):
-    """Inner products of the columns of one speed bin and direction, the signal last, and the sum of its speeds."""
-
-    matrix: FloatArray
-    speeds: float
-    samples: int
-
-    def plus(self, other: "_Sums") -> "_Sums":
-        return _Sums(self.matrix + other.matrix, self.speeds + other.speeds, self.samples + other.samples)
 
 
 class LinesBySpeed:
@@ -49,7 +39,7 @@ class LinesBySpeed:
     def __init__(self, speeds: SpeedBins, harmonics: int) -> None:
         self._speeds = speeds
         self._harmonics = harmonics
-        self._bins: dict[tuple[int, bool], _Sums] = {}
+        self._bins: dict[tuple[int, bool], FloatArray] = {}  # inner products, by number and direction
 
     def add(self, record: Record) -> None:
         """Take a record's samples, each in its speed bin."""
@@ -59,33 +49,32 @@ class LinesBySpeed:
             return
         rpm, values = rpm[good], record.acceleration[good]
         orders = [k * order for k in range(1, self._harmonics + 1) for order in self._speeds.reducer.output_orders]
-        columns = np.column_stack([line_columns(record.angle[good], orders), np.ones(values.size), values])
+        lines = line_columns(record.angle[good], orders)
+        columns = np.column_stack([lines, np.ones(values.size), np.abs(rpm), values])
         signed = self._speeds.number(rpm) * np.where(rpm < 0, -1, 1)
         for key in np.unique(signed).tolist():
-            mine = columns[signed == key]
-            sums = _Sums(mine.T @ mine, float(np.abs(rpm[signed == key]).sum()), len(mine))
-            old = self._bins.get((abs(key), key < 0))
-            self._bins[abs(key), key < 0] = sums if old is None else old.plus(sums)
+            mine, place = columns[signed == key], (abs(key), key < 0)
+            self._bins[place] = self._bins.get(place, 0.0) + mine.T @ mine
 
     def result(self) -> list[SpeedLines]:
         """Return the amplitudes by rising speed; speeds whose travel does not separate the lines are left out."""
-        chosen: dict[int, _Sums] = {}
+        chosen: dict[int, FloatArray] = {}
         for (number, _), sums in self._bins.items():
-            if number not in chosen or sums.samples > chosen[number].samples:
+            if number not in chosen or sums[_ONES, _ONES] > chosen[number][_ONES, _ONES]:
                 chosen[number] = sums
         return [lines for _, sums in sorted(chosen.items()) for lines in self._solve(sums)]
 
-    def _solve(self, sums: _Sums) -> list[SpeedLines]:
-        size, lines = len(sums.matrix) - 1, 2 * self._harmonics
-        found = solve_normal(sums.matrix, np.arange(size), _WORST_CONDITION) if sums.samples > size else None
+    def _solve(self, sums: FloatArray) -> list[SpeedLines]:
+        size, lines, samples = len(sums) - 2, 2 * self._harmonics, float(sums[_ONES, _ONES])
+        found = solve_normal(sums, np.arange(size), _WORST_CONDITION) if samples > size else None
         if found is None:
             return []
         solution, inverse = found
-        rest = max(float(sums.matrix[-1, -1] - solution @ sums.matrix[:-1, -1]), 0.0) / (sums.samples - size)
+        rest = max(float(sums[-1, -1] - solution @ sums[:size, -1]), 0.0) / (samples - size)
         # Rows: real and imaginary parts; then pair by pair
         amplitude = np.linalg.norm(solution[: 2 * lines].reshape(2, -1, 2), axis=0)
         std = np.sqrt(rest * inverse.diagonal()[: 2 * lines].reshape(2, -1, 2).mean(axis=0))
-        rpm = sums.speeds / sums.samples
+        rpm = float(sums[_ONES, _SPEED]) / samples
         return [
             SpeedLines(rpm, k, LinePair(*pair), LinePair(*errors))
             for k, (pair, errors) in enumerate(zip(amplitude.tolist(), std.tolist(), strict=True), start=1)

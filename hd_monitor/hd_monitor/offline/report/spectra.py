@@ -84,9 +84,7 @@ def order_spectrum(angle: FloatArray, values: FloatArray, orders: FloatArray) ->
     Every sample counts by the way travelled since the one before, and by a Hann window over the travel covered, so
     that the resolution is two cycles per travel however often the same arc was passed.
     """
-    if angle.size < 2:
-        return Spectrum(orders, np.zeros_like(orders))
-    way = np.abs(np.gradient(angle))
+    way = np.abs(np.gradient(angle)) if angle.size > 1 else np.zeros_like(angle)
     good = np.isfinite(values) & (way > _STANDING_PARTS * math.tau)
     angle, values, way = angle[good], values[good], way[good]
     if angle.size < 2:
@@ -114,7 +112,7 @@ class OrderMapAccumulator:
     def __init__(self, speeds: SpeedBins, highest: float) -> None:
         self._speeds = speeds
         self._orders = np.arange(0.0, highest + self._STEP / 2, self._STEP)
-        self._squares: dict[int, tuple[FloatArray, FloatArray]] = {}
+        self._squares: dict[int, FloatArray] = {}  # sum and count, shape (2, orders)
 
     def add(self, record: Record) -> None:
         """Take the pieces of a record in which the joint turns one way."""
@@ -144,17 +142,14 @@ class OrderMapAccumulator:
             np.maximum.at(shown, place[inside], amplitude[inside])
             shown[self._orders > orders[-1]] = np.nan
         number = int(self._speeds.number(np.abs(rpm).mean(keepdims=True))[0])
-        total, count = self._squares.get(number, (np.zeros(shown.size), np.zeros(shown.size)))
         known = np.isfinite(shown)
-        self._squares[number] = (total + np.where(known, shown**2, 0.0), count + known)
+        self._squares[number] = self._squares.get(number, 0.0) + np.array([np.where(known, shown**2, 0.0), known])
 
     def result(self) -> OrderMap | None:
         """Return the map; None if the joint never turned."""
         if not self._squares:
             return None
         numbers = sorted(self._squares)
-        rows = []
-        for number in numbers:
-            total, count = self._squares[number]
-            rows.append(np.sqrt(np.divide(total, count, out=np.full(total.size, np.nan), where=count > 0)))
-        return OrderMap(np.array(numbers) * self._speeds.width, self._orders, np.array(rows))
+        total, count = np.stack([self._squares[number] for number in numbers], axis=1)
+        mean = np.divide(total, count, out=np.full(total.shape, np.nan), where=count > 0)
+        return OrderMap(np.array(numbers) * self._speeds.width, self._orders, np.sqrt(mean))

@@ -1,7 +1,7 @@
 """Bins of wave-generator speed, by which a report's analyses divide the records of a run."""
 
 import math
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -10,22 +10,14 @@ from ...arrays import BoolArray, FloatArray, IntArray
 from ...reducer import Reducer
 
 
-@dataclass(frozen=True, slots=True)
-class SpeedBins:
-    """Bins of one width, and the speed below which the joint counts as standing.
-
-    Parameters
-    ----------
-    reducer : Reducer
-    width : float
-        Of the bins [rpm of the wave generator].
-    minimum_speed : float
-        Wave-generator speed [rpm] below which the joint counts as standing.
-    """
+class SpeedBins(NamedTuple):
+    """Bins of one width, and the speed below which the joint counts as standing."""
 
     reducer: Reducer
     width: float
+    """Of the bins [rpm of the wave generator]."""
     minimum_speed: float
+    """Wave-generator speed [rpm] below which the joint counts as standing."""
 
     def rpm(self, record: Record) -> FloatArray:
         """Wave-generator speed at each sample [rpm], with the output's sign."""
