@@ -28,38 +28,25 @@ WHOLE_RECORDING: Mapping[str, Any] = {"analysis.memory": 86_400.0, "dynamics.ref
 
 @dataclass(slots=True, kw_only=True)
 class JointIdentification:
-    """What the recordings tell of one joint.
-
-    Attributes
-    ----------
-    plan : JointPlan
-        As in the first recording.
-    identifier : Identifier or SensorlessIdentifier
-        Carries the evidence from one recording to the next.
-    tooth_check : ToothCheck
-    bags : list of str
-        Recordings with usable data.
-    found : Identification or None
-        None if there was not enough motion.
-    teeth : ToothPairRanking or None
-        None if there was no motion at all.
-    last : Assessment or None
-        The last one of the last usable recording.
-    qualities : list of Quality
-        Of each usable recording.
-    complaints : list of str
-        Why recordings were not usable.
-    """
+    """What the recordings tell of one joint."""
 
     plan: JointPlan
+    """As in the first recording."""
     identifier: SomeIdentifier
+    """Carries the evidence from one recording to the next."""
     tooth_check: ToothCheck
     bags: list[str] = field(default_factory=list)
+    """Recordings with usable data."""
     found: Identification | None = None
+    """None if there was not enough motion."""
     teeth: ToothPairRanking | None = None
+    """None if there was no motion at all."""
     last: Assessment | None = None
+    """The last one of the last usable recording."""
     qualities: list[Quality] = field(default_factory=list)
+    """Of each usable recording."""
     complaints: list[str] = field(default_factory=list)
+    """Why recordings were not usable."""
 
     @property
     def settings(self) -> JointSettings:

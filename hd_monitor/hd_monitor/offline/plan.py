@@ -1,9 +1,10 @@
 """What to replay: which joints with which settings, listening to which of a recording's topics."""
 
 import itertools
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 from .. import cdr
 from ..errors import ParameterError
@@ -18,50 +19,32 @@ _JOINTS = "joints"
 _FIRST_MESSAGES = 200
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class JointPlan:
-    """A joint to replay.
-
-    Attributes
-    ----------
-    joint : str
-        Its name in the parameters.
-    settings : JointSettings
-    topics : dict of Quantity to str
-        Full names.
-    messages : dict of Quantity to int
-        Messages recorded on these topics; of all joints where they share a topic.
-    notes : tuple of str
-        What was taken for granted.
-    """
+class JointPlan(NamedTuple):
+    """A joint to replay."""
 
     joint: str
+    """Its name in the parameters."""
     settings: JointSettings
     topics: dict[Quantity, str]
+    """Full names."""
     messages: dict[Quantity, int]
-    notes: tuple[str, ...] = ()
+    """Messages recorded on these topics; of all joints where they share a topic."""
+    notes: tuple[str, ...]
+    """What was taken for granted."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Request:
-    """What the user requested.
-
-    Attributes
-    ----------
-    parameters : mapping
-        The node's parameters by dotted name.
-    joints : sequence of str
-        Joints to replay; all of the parameters' if empty.
-    namespace : str or None
-        Namespace of the node, if several have been recorded.
-    remap : mapping of str to str
-        From the contract's relative names to the recording's.
-    """
+    """What the user requested."""
 
     parameters: Mapping[str, Any] = field(default_factory=dict)
+    """The node's parameters by dotted name."""
     joints: Sequence[str] = ()
+    """Joints to replay; all of the parameters' if empty."""
     namespace: str | None = None
+    """Namespace of the node, if several have been recorded."""
     remap: Mapping[str, str] = field(default_factory=dict)
+    """From the contract's relative names to the recording's."""
 
 
 def plan(bag: Bag, request: Request) -> list[JointPlan]:
@@ -81,27 +64,22 @@ def plan(bag: Bag, request: Request) -> list[JointPlan]:
     notes: list[str] = []
     if not any(name == _SOURCE or name.endswith(f".{_SOURCE}") for name in parameters):
         parameters[_SOURCE] = _choose_source(finder, notes)
-    named = list(parameters.get(_JOINTS) or ())
-    several = len(named) > 1
-    if not named:
-        named = list(request.joints) or _discover(bag, finder, str(parameters.get(_SOURCE, "")), request)
-        several = len(named) > 1
-        if named:
-            parameters[_JOINTS] = named
+    named = parameters.get(_JOINTS) or list(request.joints) or _discover(bag, finder, parameters.get(_SOURCE), request)
+    if named:
+        parameters[_JOINTS] = named
     settings = split_joints(parameters)
     if unknown := [joint for joint in request.joints if joint not in settings]:
         raise ParameterError(f"{', '.join(unknown)}: not among the parameters' joints, {', '.join(settings)}")
-
-    def count(topic: str) -> int:
-        return sum(recorded.messages for recorded in bag.topics if recorded.name == topic)
-
+    recorded: Counter[str] = Counter()
+    for topic in bag.topics:
+        recorded[topic.name] += topic.messages
     plans = []
     for joint, own in settings.items():
         if request.joints and joint not in request.joints:
             continue
-        topics = finder.joint_topics(own.sources, joint if several else None)
-        messages = {quantity: count(topic) for quantity, topic in topics.items()}
-        plans.append(JointPlan(joint=joint, settings=own, topics=topics, messages=messages, notes=tuple(notes)))
+        topics = finder.joint_topics(own.sources, joint if len(settings) > 1 else None)
+        messages = {quantity: recorded[topic] for quantity, topic in topics.items()}
+        plans.append(JointPlan(joint, own, topics, messages, tuple(notes)))
     return plans
 
 
@@ -136,9 +114,9 @@ def _choose_source(finder: TopicFinder, notes: list[str]) -> str:
     return "block"
 
 
-def _discover(bag: Bag, finder: TopicFinder, name: str, request: Request) -> list[str]:
+def _discover(bag: Bag, finder: TopicFinder, name: object, request: Request) -> list[str]:
     """Take the joints below whose names vibration topics stand, if joint_states knows them and nobody was named."""
-    source = INPUT_SOURCES.get(name, JOINT_STATES)
+    source = INPUT_SOURCES.get(str(name), JOINT_STATES)
     if source is JOINT_STATES or request.namespace is not None or request.remap:
         return []
     prefixes = finder.prefixes(source)

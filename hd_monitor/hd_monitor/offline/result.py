@@ -60,20 +60,13 @@ def line_entries(found: Identification | None) -> list[dict[str, Any]]:
 
 @dataclass(slots=True)
 class JointResult:
-    """What was said of one joint, collected as it comes.
-
-    Attributes
-    ----------
-    plan : JointPlan
-    timeline : list of dict
-        One entry an assessment.
-    last : Assessment or None
-        What a node would show at the recording's end.
-    """
+    """What was said of one joint, collected as it comes."""
 
     plan: JointPlan
     timeline: list[dict[str, Any]] = field(default_factory=list)
+    """One entry an assessment."""
     last: Assessment | None = None
+    """What a node would show at the recording's end."""
 
     def add(self, said: Replayed) -> None:
         """Take the next assessment."""
@@ -91,20 +84,18 @@ class JointResult:
         if self.last is None:
             return f"joint {self.plan.joint!r}: too few messages were recorded for a single verdict"
         quality = self.last.quality
-        if not quality.motion_messages:
-            return f"joint {self.plan.joint!r}: no usable joint states: {self._why(Quantity.MOTION)}"
-        if Quantity.VIBRATION in self.plan.topics and not quality.samples:
-            return f"joint {self.plan.joint!r}: no usable vibration samples: {self._why(Quantity.VIBRATION)}"
-        if Quantity.TORQUE in self.plan.topics and not quality.torque_messages:
-            return f"joint {self.plan.joint!r}: no usable torque samples: {self._why(Quantity.TORQUE)}"
+        for quantity, taken, what in (
+            (Quantity.MOTION, quality.motion_messages, "joint states"),
+            (Quantity.VIBRATION, quality.samples, "vibration samples"),
+            (Quantity.TORQUE, quality.torque_messages, "torque samples"),
+        ):
+            if quantity in self.plan.topics and not taken:
+                return f"joint {self.plan.joint!r}: no usable {what}: {quality.last_fault or self._why(quantity)}"
         return ""
 
     def _why(self, quantity: Quantity) -> str:
         """Say why nothing of a topic could be used."""
-        assert self.last is not None
         topic, messages = self.plan.topics[quantity], self.plan.messages[quantity]
-        if fault := self.last.quality.last_fault:
-            return fault
         if len(self.plan.topics) == 1:
             return f"the recording's {messages} message(s) on {topic} are too few"
         return (

@@ -53,9 +53,7 @@ def _critical(entry: Mapping[str, Any]) -> list[tuple[float, str]]:
     parameters = entry.get("parameters", {})
     if "reducer.flexspline_teeth" not in parameters:
         return []
-    reducer = Reducer(**{name: parameters[f"reducer.{name}"] for name in _REDUCER})
+    names = ("flexspline_teeth", "circular_spline_teeth", "mount")
+    reducer = Reducer(**{name: parameters[f"reducer.{name}"] for name in names})
     natural = parameters.get("dynamics.natural_frequency", Dynamics().natural_frequency)
     return pair_speeds(reducer, natural, parameters.get("analysis.harmonics", 3))
-
-
-_REDUCER = ("flexspline_teeth", "circular_spline_teeth", "mount")
