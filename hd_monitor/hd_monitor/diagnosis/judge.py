@@ -2,7 +2,6 @@
 
 from collections import deque
 from dataclasses import replace
-from typing import NamedTuple
 
 from ..identification.result import Identification
 from ..reducer import Mount
@@ -28,18 +27,6 @@ FAULT_CODES = {
 _SHARP = 0.1  # an index whose standard deviation is below this part of the limit is compared with it directly
 
 
-class _Case(NamedTuple):
-    """What a verdict about the present evidence depends on."""
-
-    evidence: Identification
-    limits: DiagnosisSettings
-    shown: tuple[Component, Level] | None
-
-    def is_as(self, other: "_Case") -> bool:
-        """Whether the verdict must be the same."""
-        return self.evidence is other.evidence and self[1:] == other[1:]
-
-
 class Judge:
     """Keeps one joint's verdict.
 
@@ -63,7 +50,6 @@ class Judge:
         self._recent: deque[tuple[Component, Level]] = deque(maxlen=self._limits.confirm_window)
         self._shown: Verdict | None = None
         self._latched: Verdict | None = None
-        self._judged: tuple[_Case, Verdict] | None = None
 
     def change_limits(self, limits: DiagnosisSettings) -> None:
         """Put other limits in force; what is shown stays until the next verdicts."""
@@ -85,7 +71,7 @@ class Judge:
         missing : str
             What is still missing, in words, for the case that there is no evidence yet.
         """
-        now = self._of_now(evidence, missing)
+        now = self._undetermined(missing) if evidence is None else self._assess(evidence)
         self._recent.append((now.component, now.level))
         shown = self._shown
         count = self._recent.count((now.component, now.level))
@@ -101,16 +87,6 @@ class Judge:
             return self._latch(held)
         self._shown = shown
         return self._latch(shown)
-
-    def _of_now(self, evidence: Identification | None, missing: str) -> Verdict:
-        """Assess the evidence; it often stays the same from one period to the next."""
-        if evidence is None:
-            return self._undetermined(missing)
-        shown = self._shown
-        case = _Case(evidence, self._limits, (shown.component, shown.level) if shown is not None else None)
-        if self._judged is None or not case.is_as(self._judged[0]):
-            self._judged = case, self._assess(evidence)
-        return self._judged[1]
 
     def _latch(self, shown: Verdict) -> Verdict:
         if not self._limits.latch:

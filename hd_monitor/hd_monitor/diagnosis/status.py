@@ -3,7 +3,23 @@
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
 from ..assessment import Assessment
+from ..identification.result import Identification
+from ..reducer import LinePair
+
+_NO_LINES = np.empty(0, dtype=np.complex128)
+_UNKNOWN = LinePair(math.nan, math.nan)
+_NOTHING = Identification(
+    circular_spline=_NO_LINES,
+    flexspline=_NO_LINES,
+    index=_UNKNOWN,
+    index_std=_UNKNOWN,
+    natural_frequency_std=math.nan,
+    load_fluctuation=math.nan,
+)
+"""Stands in as long as nothing is identified: every number unknown."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -29,16 +45,14 @@ class Status:
         return dict(self.values)[key]
 
 
-def _number(value: float, digits: int = 3) -> str:
-    return "unknown" if math.isnan(value) else f"{value:.{digits}f}"
-
-
 def status_of(assessment: Assessment, joint: str) -> Status:
     """Write an assessment of the joint of this name as a status."""
-    verdict, found, quality = assessment.verdict, assessment.identification, assessment.quality
+    verdict, quality = assessment.verdict, assessment.quality
+    found = assessment.identification or _NOTHING
+    kind = "unknown" if found is _NOTHING else "relative" if found.relative else "absolute"
     limits, needed = assessment.settings.diagnosis, assessment.settings.reducer.travel_to_separate(1)
-    nan = math.nan
-    degrees = math.degrees(found.travel) if found else 0.0
+    critical_speed = found.critical_speed
+    samples, *faults = quality.counts()
     values = [
         ("joint", joint),
         ("component", verdict.component.value),
@@ -46,41 +60,28 @@ def status_of(assessment: Assessment, joint: str) -> Status:
         ("reason", verdict.reason),
         ("speed (rpm)", _number(assessment.speed, 1)),
         ("rms (m/s^2)", _number(assessment.rms, 4)),
-        ("flexspline index (%)", _number(100.0 * found.index.flexspline if found else nan)),
-        ("flexspline index std (%)", _number(100.0 * found.index_std.flexspline if found else nan)),
-        ("circular spline index (%)", _number(100.0 * found.index.circular_spline if found else nan)),
-        ("circular spline index std (%)", _number(100.0 * found.index_std.circular_spline if found else nan)),
-        ("index kind", ("relative" if found.relative else "absolute") if found else "unknown"),
+        ("flexspline index (%)", _number(100.0 * found.index.flexspline)),
+        ("flexspline index std (%)", _number(100.0 * found.index_std.flexspline)),
+        ("circular spline index (%)", _number(100.0 * found.index.circular_spline)),
+        ("circular spline index std (%)", _number(100.0 * found.index_std.circular_spline)),
+        ("index kind", kind),
         ("warn limit (%)", _number(100.0 * limits.warn_index)),
         ("error limit (%)", _number(100.0 * limits.error_index)),
-        ("travel (deg)", _number(degrees, 1)),
+        ("travel (deg)", _number(math.degrees(found.travel), 1)),
         ("travel needed (deg)", _number(math.degrees(needed), 1)),
-        ("signal to noise (dB)", _number(found.signal_to_noise if found else nan, 1)),
-        ("misfit", _number(found.misfit if found else nan, 2)),
-        ("fit", found.fit_status.value if found and found.fit_status else "none"),
-        ("natural frequency (Hz)", _number(found.natural_frequency if found else nan, 2)),
-        ("natural frequency std (Hz)", _number(found.natural_frequency_std if found else nan, 2)),
-        ("damping ratio", _number(found.damping_ratio if found else nan, 4)),
-        ("load fluctuation (N*m)", _number(found.load_fluctuation if found else nan)),
-        ("unstable from (rpm)", _speed(found.critical_speed if found else nan)),
+        ("signal to noise (dB)", _number(found.signal_to_noise, 1)),
+        ("misfit", _number(found.misfit, 2)),
+        ("fit", found.fit_status.value if found.fit_status else "none"),
+        ("natural frequency (Hz)", _number(found.natural_frequency, 2)),
+        ("natural frequency std (Hz)", _number(found.natural_frequency_std, 2)),
+        ("damping ratio", _number(found.damping_ratio, 4)),
+        ("load fluctuation (N*m)", _number(found.load_fluctuation)),
+        ("unstable from (rpm)", "never" if math.isinf(critical_speed) else _number(critical_speed, 0)),
         ("torque source", assessment.torque_source),
-        ("samples", str(quality.samples)),
-        ("samples used", str(found.samples if found else 0)),
+        samples,
+        ("samples used", str(found.samples)),
         ("sampling rate (Hz)", _number(quality.rate, 2)),
-        ("gaps", str(quality.gaps)),
-        ("lost samples", str(quality.lost)),
-        ("duplicates", str(quality.duplicates)),
-        ("out of order", str(quality.out_of_order)),
-        ("not finite", str(quality.not_finite)),
-        ("clipped", str(quality.clipped)),
-        ("stuck", str(quality.stuck)),
-        ("spikes", str(quality.spikes)),
-        ("clock jumps", str(quality.clock_jumps)),
-        ("joint states", str(quality.motion_messages)),
-        ("bad joint states", str(quality.motion_faults)),
-        ("torque samples", str(quality.torque_messages)),
-        ("bad torque samples", str(quality.torque_faults)),
-        ("rejected messages", str(quality.rejected)),
+        *faults,
         ("last complaint", quality.last_fault or "none"),
         *assessment.extra,
     ]
@@ -92,5 +93,5 @@ def status_of(assessment: Assessment, joint: str) -> Status:
     )
 
 
-def _speed(rpm: float) -> str:
-    return "never" if math.isinf(rpm) else _number(rpm, 0)
+def _number(value: float, digits: int = 3) -> str:
+    return "unknown" if math.isnan(value) else f"{value:.{digits}f}"
