@@ -2,7 +2,7 @@
 
 import functools
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -48,13 +48,7 @@ class OrderSpectrum:
 
     def faded(self, keep: float) -> "OrderSpectrum":
         """Return the sums of data that count `keep` times."""
-        return OrderSpectrum(
-            sums=keep * self.sums,
-            counts=keep * self.counts,
-            power=keep * self.power,
-            lowest=self.lowest,
-            highest=self.highest,
-        )
+        return replace(self, sums=keep * self.sums, counts=keep * self.counts, power=keep * self.power)
 
     @property
     def turns(self) -> float:

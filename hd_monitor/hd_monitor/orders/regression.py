@@ -163,17 +163,17 @@ def line_columns(angle: npt.ArrayLike, orders: npt.ArrayLike) -> FloatArray:
 
     Parameters
     ----------
-    angle : array_like, shape (samples,)
+    angle : array_like, shape S
         Angle [rad].
     orders : array_like, shape (lines,)
         Cycles per revolution of that angle.
 
     Returns
     -------
-    ndarray, shape (samples, 2 * lines)
+    ndarray, shape S + (2 * lines,)
     """
     phase = np.multiply.outer(np.asarray(angle, dtype=np.float64), np.asarray(orders, dtype=np.float64))
-    return np.concatenate([np.cos(phase), -np.sin(phase)], axis=1)
+    return np.concatenate([np.cos(phase), -np.sin(phase)], axis=-1)
 
 
 def solve_normal(

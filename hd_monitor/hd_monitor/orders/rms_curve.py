@@ -6,6 +6,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from ..arrays import FloatArray
+
 
 class SpeedBin(NamedTuple):
     """One speed bin: its mean wave-generator speed [rpm], the RMS there and the samples behind it."""
@@ -26,7 +28,7 @@ class RmsAccumulator:
 
     def __init__(self, width: float) -> None:
         self._width = width
-        self._sums: dict[int, tuple[float, float, int]] = {}
+        self._sums: dict[float, FloatArray] = {}  # by the number of the bin: of speeds, of squares, of ones
 
     def add(self, speed_rpm: npt.ArrayLike, values: npt.ArrayLike) -> None:
         """Add samples (NaN ones are left out): wave-generator speeds [rpm] and values, both of shape (N,)."""
@@ -34,23 +36,14 @@ class RmsAccumulator:
         value = np.asarray(values, dtype=np.float64)
         good = np.isfinite(speed) & np.isfinite(value)
         speed, value = speed[good], value[good]
-        if not speed.size:
-            return
-        number = np.rint(speed / self._width).astype(np.int64)
-        lowest = int(number.min())
-        number -= lowest
-        count, speeds, powers = np.bincount(number), np.bincount(number, speed), np.bincount(number, value * value)
-        for offset in np.flatnonzero(count).tolist():
-            total, power, samples = self._sums.get(lowest + offset, (0.0, 0.0, 0))
-            self._sums[lowest + offset] = (
-                total + float(speeds[offset]),
-                power + float(powers[offset]),
-                samples + int(count[offset]),
-            )
+        numbers, place = np.unique(np.rint(speed / self._width), return_inverse=True)
+        sums = np.stack([np.bincount(place, weights) for weights in (speed, value * value, np.ones(speed.size))])
+        for number, own in zip(numbers.tolist(), sums.T, strict=True):
+            self._sums[number] = self._sums.get(number, 0.0) + own
 
     def curve(self) -> tuple[SpeedBin, ...]:
         """Return the bins that have samples, by rising speed."""
         return tuple(
-            SpeedBin(total / samples, math.sqrt(power / samples), samples)
-            for _, (total, power, samples) in sorted(self._sums.items())
+            SpeedBin(total / samples, math.sqrt(power / samples), int(samples))
+            for total, power, samples in (self._sums[number].tolist() for number in sorted(self._sums))
         )

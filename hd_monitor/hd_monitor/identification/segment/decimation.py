@@ -4,10 +4,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import signal
+from scipy import ndimage, signal
 from scipy.interpolate import CubicSpline
 
-from ...arrays import BoolArray, FloatArray, runs_of
+from ...arrays import BoolArray, FloatArray
 
 RATE_OVER_LINE = 2.8
 RATE_OVER_NATURAL = 6.4
@@ -67,8 +67,8 @@ def decimate(raw: FloatArray, period: float, line: float, natural: float) -> Dec
         return Decimated(values=values, used=used, factor=1, first=0, highest_frequency=0.5 / period)
     taps = signal.firwin(2 * half + 1, 0.43 * 2.0 / factor, window=("kaiser", 6.0))
     values = np.convolve(_bridge(raw, used), taps, mode="valid")[::factor]
-    hole = _in_hole(used)
-    near = np.convolve(hole, np.ones(2 * factor + 1), mode="same")[half : raw.size - half : factor] < 0.5
+    holes = ndimage.binary_opening(~used, np.ones(_BRIDGED + 1, dtype=np.bool_))
+    near = ~ndimage.binary_dilation(holes, np.ones(2 * factor + 1, dtype=np.bool_))[half : raw.size - half : factor]
     return Decimated(
         values=np.where(near, values, 0.0),
         used=near,
@@ -86,11 +86,3 @@ def _bridge(raw: FloatArray, used: BoolArray) -> FloatArray:
     filled = raw.copy()
     filled[~used] = CubicSpline(places, raw[used])(np.clip(np.flatnonzero(~used), places[0], places[-1]))
     return filled
-
-
-def _in_hole(used: BoolArray) -> BoolArray:
-    """Mark missing samples that are more than `_BRIDGED` in a row."""
-    hole = np.zeros(used.shape, dtype=np.bool_)
-    for first, last in runs_of(~used):
-        hole[first:last] = last - first > _BRIDGED
-    return hole

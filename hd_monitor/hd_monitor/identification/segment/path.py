@@ -4,10 +4,11 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from scipy.interpolate import CubicHermiteSpline
 
 from ...arrays import ComplexArray, FloatArray
-from ...interpolation import cubics
-from ...model.oscillator import GAUSS_OFFSETS
+from ...model.oscillator import gauss_times
+from ...orders.regression import line_columns
 from ...reducer import WAVE_GENERATOR_LOBES, Reducer
 
 
@@ -69,55 +70,31 @@ def paths_along(
     Their shapes are (steps + 1,), the last sample included, and (2, steps). Between samples the angle is a cubic,
     whose slopes are the speeds; all else is linear.
     """
-    parts = (np.arange(substeps) + np.array([[0.0], *([offset] for offset in GAUSS_OFFSETS)])) / substeps
-    slopes = motion.speed * motion.step
-    q = _at_points(parts, motion.angle, *cubics(motion.angle[:-1], motion.angle[1:], slopes[:-1], slopes[1:]))
-    turn, lowest = np.exp(1j * q), reducer.output_orders[0]
-    first = np.exp(1j * lowest * q)
-    second = first * powers(turn, WAVE_GENERATOR_LOBES)[-1]  # the lobes are what the pair's orders differ by
-    rates = np.outer(
-        [lowest, lowest, lowest + WAVE_GENERATOR_LOBES, lowest + WAVE_GENERATOR_LOBES], 1 + np.arange(harmonics)
-    )
-    lines = np.empty((q.size, *rates.shape))
+    grid = np.arange((motion.angle.size - 1) * substeps + 1) / substeps
+    nodes, gauss = (_path(motion, places, reducer, harmonics, load_orders) for places in (grid, gauss_times(grid)))
+    return nodes, gauss
+
+
+def _path(motion: Motion, places: FloatArray, reducer: Reducer, harmonics: int, load_orders: tuple[int, ...]) -> Path:
+    """Return the path at some places along the samples, counted in samples."""
+    samples = np.arange(motion.angle.size)
+    angle = CubicHermiteSpline(samples, motion.angle, motion.speed * motion.step)(places)
+    lowest = reducer.output_orders[0]
+    first = np.exp(1j * lowest * angle)
+    second = first * powers(np.exp(1j * angle), WAVE_GENERATOR_LOBES)[-1]  # the lobes: what the orders differ by
+    lines = np.empty((*places.shape, 4, harmonics))
     for spline, unit in enumerate((first, second)):
         for k, power in enumerate(powers(unit, harmonics)[1:]):
-            lines[:, 2 * spline, k] = power.real
-            np.negative(power.imag, out=lines[:, 2 * spline + 1, k])
-    loads = np.empty((q.size, 2 * len(load_orders)))
-    for place, load_order in enumerate(load_orders):
-        load = np.exp(1j * load_order * q)
-        loads[:, place], loads[:, place + len(load_orders)] = load.real, -load.imag
-    torque, speed, acceleration = (
-        _at_points(parts, values, values[:-1], np.diff(values))
-        for values in (motion.torque, motion.speed, motion.acceleration)
+            lines[..., 2 * spline, k] = power.real
+            np.negative(power.imag, out=lines[..., 2 * spline + 1, k])
+    return Path(
+        lines=lines.reshape(*places.shape, -1),
+        rates=np.outer(np.repeat([lowest, lowest + WAVE_GENERATOR_LOBES], 2), 1 + np.arange(harmonics)).ravel(),
+        loads=line_columns(angle, load_orders),
+        torque=np.interp(places, samples, motion.torque),
+        speed=np.interp(places, samples, motion.speed),
+        acceleration=np.interp(places, samples, motion.acceleration),
     )
-    steps = (motion.angle.size - 1) * substeps
-
-    def path(points: slice, *shape: int) -> Path:
-        return Path(
-            lines=lines[points].reshape(*shape, -1),
-            rates=rates.ravel(),
-            loads=loads[points].reshape(*shape, -1),
-            torque=torque[points].reshape(shape),
-            speed=speed[points].reshape(shape),
-            acceleration=acceleration[points].reshape(shape),
-        )
-
-    return path(slice(steps + 1), steps + 1), path(slice(steps + 1, None), 2, steps)
-
-
-def _at_points(parts: FloatArray, samples: FloatArray, *coefficients: FloatArray) -> FloatArray:
-    """Evaluate polynomials in the place in each interval between samples, the constant coefficients first.
-
-    They are evaluated at `parts` of each interval, shape (kinds, parts). The points come kind by kind, each in order of
-    time; those of the first kind end with the last sample.
-    """
-    place = parts[:, :, None]
-    values = coefficients[-1]
-    for coefficient in coefficients[-2::-1]:
-        values = coefficient + place * values
-    points = np.moveaxis(values, 1, 2).reshape(len(parts), -1)
-    return np.concatenate([points[0], samples[-1:], points[1:].ravel()])
 
 
 def powers(unit: ComplexArray, highest: int) -> list[ComplexArray]:

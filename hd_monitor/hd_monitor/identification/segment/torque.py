@@ -7,9 +7,8 @@ more than a defect does. What a joint transmits follows its angle and its motion
 import math
 
 import numpy as np
-from scipy import fft
 from scipy.ndimage import gaussian_filter1d
-from scipy.signal import get_window
+from scipy.signal import periodogram
 
 from ...arrays import FloatArray
 from ...orders.regression import line_columns
@@ -23,7 +22,6 @@ SIGNIFICANT = 9.0
 _SLOW_SIGNIFICANT = 3.0  # power of what is slow, over that of the noise in it, from which some of it counts as real
 _NOISE_BAND = (4.0, 20.0)  # Hz, above what is slow and below what slow joint states can show
 _MEDIAN = math.log(2.0)  # of the power of noise at one frequency, over its mean
-_HANN_POWER = 0.375  # mean square of a Hann window
 _QUICK = 0.012  # s, smoothing of the joint's own acceleration
 _LOAD_ORDERS = (1, 2)  # cycles per output revolution
 _FRICTION_SPEED = 0.03  # of the top speed, over which friction changes its sign
@@ -81,7 +79,6 @@ def _projection(torque: FloatArray, terms: list[FloatArray]) -> FloatArray:
 
 def _noise_density(rest: FloatArray, period: float) -> float:
     """One-sided density [(N·m)²/Hz] of the noise in what a regression leaves of a torque."""
-    power = np.abs(fft.rfft(rest * get_window("hann", rest.size))) ** 2 * (2.0 * period / (_HANN_POWER * rest.size))
-    frequencies = np.arange(power.size) / (rest.size * period)
+    frequencies, density = periodogram(rest, 1.0 / period, window="hann", detrend=False)
     band = (frequencies >= _NOISE_BAND[0]) & (frequencies <= _NOISE_BAND[1])
-    return float(np.median(power[band])) / _MEDIAN if band.any() else 0.0
+    return float(np.median(density[band])) / _MEDIAN if band.any() else 0.0
