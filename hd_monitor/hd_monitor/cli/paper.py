@@ -11,8 +11,7 @@ from pathlib import Path
 from ..errors import HdMonitorError
 from ..paper.cases import has_cases, load_own_case, load_paper_cases
 from ..paper.exhibit import Outcome
-from ..paper.own_reducer import FIGURES
-from ..paper.reproduction import EXHIBITS, compute
+from ..paper.reproduction import EXHIBITS, OWN_EXHIBITS, compute
 from ..paper.table import claim_table, fact_table
 
 _WIDEST = 120
@@ -74,7 +73,7 @@ def run(arguments: argparse.Namespace) -> int:
                 "figures; correct if others share the file, else check the spelling",
                 file=sys.stderr,
             )
-        exhibits = compute(FIGURES, case, arguments.only, tell)
+        exhibits = compute(OWN_EXHIBITS, case, arguments.only, tell)
         print(fact_table(exhibits))
         heading = f"Torsional vibration of the reducer in {arguments.params.name}"
     else:
@@ -87,7 +86,7 @@ def run(arguments: argparse.Namespace) -> int:
         from ..paper.page import write_report
 
         print(f"report: {write_report(exhibits, arguments.report, heading=heading, command=_command(arguments))}")
-    tell(f"{len(exhibits)} of {len(FIGURES if own else EXHIBITS)} in {time.perf_counter() - start:.1f} s")
+    tell(f"{len(exhibits)} of {len(OWN_EXHIBITS if own else EXHIBITS)} in {time.perf_counter() - start:.1f} s")
     return int(any(claim.outcome is Outcome.FAIL for exhibit in exhibits.values() for claim in exhibit.claims))
 
 

@@ -1,7 +1,8 @@
-"""The list of exhibits, and the loop that computes them."""
+"""The lists of exhibits, of the paper and of a user's own reducer, and the loop that computes them."""
 
 import time
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 from ..errors import ParameterError
@@ -14,7 +15,7 @@ from . import (
     stiffness_figures,
     sweep_figures,
 )
-from .cases import Cases
+from .cases import Case, Cases
 from .exhibit import Exhibit, Outcome
 
 
@@ -51,6 +52,25 @@ EXHIBITS: tuple[Entry[Cases], ...] = (
     Entry("F20", "stiffness fluctuation before and after", reassembly_figures.figure_20),
     Entry("ST", "stability chart", speed_figures.stability),
 )
+
+
+def _own_chart(case: Case) -> Exhibit:
+    """Chart stability at 80 steps of the speeds, whatever their step: a property curve's is too coarse."""
+    fine = case.speeds._replace(step=(case.speeds.stop - case.speeds.start) / 80.0)
+    return speed_figures.stability_over_speed(replace(case, speeds=fine))
+
+
+OWN_EXHIBITS: tuple[Entry[Case], ...] = (
+    Entry("F4", "stiffness and characteristic numbers", stiffness_figures.stiffness_over_angle),
+    Entry("F7", "static stiffness", stiffness_figures.static_stiffness),
+    Entry("F8", "bi-spectra", line_figures.bispectra),
+    Entry("F10", "sweep", sweep_figures.envelope),
+    Entry("F13", "time history", rig_figures.time_history),
+    Entry("F16", "property curve", speed_figures.vibration_over_speed),
+    Entry("F17", "phase trace", rig_figures.phase_trace),
+    Entry("ST", "stability chart", _own_chart),
+)
+"""What the paper draws, for one reducer and without claims."""
 
 
 def select[Given](names: Iterable[str], entries: Sequence[Entry[Given]]) -> tuple[Entry[Given], ...]:

@@ -47,17 +47,23 @@ def beat(values: FloatArray, rate: float) -> Beat:
     )
 
 
-def beat_panel(case: Case, record: TimeResponse) -> Panel:
-    """Draw the time history as figure 13a does."""
+def time_history(case: Case) -> Exhibit:
+    """Time history at the case's speed, with its envelope."""
+    record = steady_record(case.model, case.speed)
     values = case.in_g(record.acceleration)
     measured = beat(values, record.rate)
     part = record.times <= _SHOWN
     times, label = record.times[part], f"envelope, beat {measured.frequency:.3f} Hz"
-    return Panel(
+    panel = Panel(
         title="Time history",
         x_label="time (s)",
         y_label="tangential acceleration (g)",
         curves=(Curve(x=times, y=values[part]), Curve(x=times, y=measured.envelope[part], label=label, style="dashed")),
+    )
+    return Exhibit(
+        title=f"Time history of torsional vibration at {case.speed:g} rpm",
+        caption=f"Tangential acceleration at {case.sensor_radius:g} m.",
+        panels=(panel,),
     )
 
 
@@ -68,10 +74,8 @@ def figure_13a(cases: Cases) -> Exhibit:
     k = strongest_pair(case, case.speed)
     separation = case.model.reducer.line_separation(case.speed, k)
     measured = beat(record.acceleration, record.rate)
-    return Exhibit(
-        title=f"Time history of torsional vibration at {case.speed:g} rpm",
-        caption=f"Tangential acceleration at {case.sensor_radius:g} m.",
-        panels=(beat_panel(case, record),),
+    return replace(
+        time_history(case),
         claims=(
             Claim(
                 statement="A beat appears, caused by the small frequency difference of the bi-spectra",
@@ -209,19 +213,20 @@ def quasiperiodicity(case: Case, record: TimeResponse) -> Quasiperiodicity:
     )
 
 
-def phase_panels(case: Case, record: TimeResponse) -> tuple[Panel, ...]:
-    """Draw the phase trace as figure 17 does, and the states caught once per circular-spline period.
+def phase_trace(case: Case) -> Exhibit:
+    """Phase trace at the case's speed, and the states caught once per circular-spline period.
 
     The trace covers half an output revolution, the common period of both lines. The states caught make a closed curve
     if the motion is quasi-periodic, else one point.
     """
+    record = steady_record(case.model, case.speed)
     states = np.stack([record.displacement, record.velocity])
     half = record.displacement.size // REVOLUTIONS // 2
     parts: tuple[tuple[str, FloatArray, Style], ...] = (
         ("Phase trace, half an output revolution", states[:, :half], "fine"),
         ("Caught once per circular-spline period", _strobe(case, record, states), "points"),
     )
-    return tuple(
+    panels = tuple(
         Panel(
             title=title,
             x_label="displacement θ (mrad)",
@@ -231,6 +236,11 @@ def phase_panels(case: Case, record: TimeResponse) -> tuple[Panel, ...]:
         )
         for title, (displacement, velocity), style in parts
     )
+    return Exhibit(
+        title=f"Phase trace at {case.speed:g} rpm",
+        caption="Simulated displacement and velocity in the steady state.",
+        panels=panels,
+    )
 
 
 def figure_17(cases: Cases) -> Exhibit:
@@ -238,10 +248,8 @@ def figure_17(cases: Cases) -> Exhibit:
     case = cases["rig"]
     record = steady_record(case.model, case.speed)
     measured = quasiperiodicity(case, record)
-    return Exhibit(
-        title=f"Phase trace at {case.speed:g} rpm",
-        caption="Simulated displacement and velocity in the steady state.",
-        panels=phase_panels(case, record),
+    return replace(
+        phase_trace(case),
         claims=(
             Claim(
                 statement="The trace is quasi-periodic",

@@ -79,6 +79,24 @@ def curve_panel(case: Case, curve: PropertyCurve, title: str, top: float | None 
     )
 
 
+def vibration_over_speed(case: Case) -> Exhibit:
+    """Property curve, with the speeds to avoid."""
+    curve = property_curve(case)
+    speed, rms = curve.highest
+    unstable = ", ".join(f"{n:g}" for n in curve.speed[curve.growth >= 0.0])
+    return Exhibit(
+        title="Property of torsional vibration-speed",
+        caption=f"RMS at {case.sensor_radius:g} m, {case.speeds.start:g} to {case.speeds.stop:g} rpm step "
+        f"{case.speeds.step:.4g}, by harmonic balance.",
+        panels=(curve_panel(case, curve, "Property curve"),),
+        facts=(
+            ("highest", f"{rms:.3g} g at {speed:g} rpm" if rms > 0.0 else "none: no stable speed"),
+            ("peaks", ", ".join(f"{n:g}" for n in curve.peaks) + " rpm"),
+            ("unstable speeds (left out of the curve)", f"{unstable} rpm" if unstable else "none"),
+        ),
+    )
+
+
 def figure_16(cases: Cases) -> Exhibit:
     """The rig's property curve, and where its peaks lie."""
     case = cases["rig"]
@@ -99,11 +117,9 @@ def figure_16(cases: Cases) -> Exhibit:
         record = steady_record(model, n)
         integrated = float(case.in_g(np.sqrt(np.mean(record.acceleration**2))))
         errors.append(abs(integrated / curve.at(n) - 1.0))
-    return Exhibit(
-        title="Property of torsional vibration-speed",
-        caption=f"RMS at {case.sensor_radius:g} m, {case.speeds.start:g} to {case.speeds.stop:g} rpm step {step:g}, "
-        "by harmonic balance.",
-        panels=(curve_panel(case, curve, "Property curve of the rig"),),
+    exhibit = vibration_over_speed(case)
+    return replace(
+        exhibit,
         claims=(
             *(
                 Claim(
@@ -132,6 +148,7 @@ def figure_16(cases: Cases) -> Exhibit:
             ),
         ),
         facts=(
+            *exhibit.facts,
             (
                 "largest difference to time integration at " + ", ".join(f"{n:g}" for n in checks) + " rpm",
                 f"{max(errors):.1e}",
@@ -156,14 +173,14 @@ def principal_threshold(model: ParametricModel) -> float:
     return float(bisect(growth, 0.0, 1.0, xtol=_THRESHOLD_ACCURACY))
 
 
-def chart_panel(case: Case) -> Panel:
-    """Draw growth rates over speed and the size of the defects, with the limit of stability."""
+def stability_over_speed(case: Case) -> Exhibit:
+    """Chart growth rates over speed and the size of the defects, with the limit of stability."""
     speeds, scales = case.speeds.values, case.scales.values
     fn, order = case.model.dynamics.natural_frequency, case.model.reducer.flexspline_order
     rates = stability_chart(case.model, speeds, scales)
     single = len(case.model.flexspline.beta) == 1 and not case.model.circular_spline.beta
     sizes = scales * (case.model.flexspline.index if single else 1.0)
-    return Panel(
+    panel = Panel(
         title="Stability over speed and size of the defect",
         x_label="wave-generator speed (rpm)",
         y_label="β of the flexspline" if single else "factor on all indexes β",
@@ -173,6 +190,14 @@ def chart_panel(case: Case) -> Panel:
             for times, label in ((1.0, "ωo1 = fn"), (2.0, "ωo1 = 2 fn"))
             if speeds[0] <= 60.0 * times * fn / order <= speeds[-1]
         ),
+    )
+    return Exhibit(
+        title="Stability chart (Strutt)",
+        caption=f"Floquet growth rate with {'a single β11' if single else 'all indexes scaled'}, fn = {fn:g} Hz, ζ = "
+        f"{case.model.dynamics.damping_ratio:g}; the black line is the limit of stability. Without damping the "
+        "tongues would touch β = 0.",
+        panels=(panel,),
+        facts=((f"growth rate at {case.speed:g} rpm", f"{growth_rate(case.model, case.speed):.3g} 1/s"),),
     )
 
 
@@ -192,12 +217,9 @@ def stability(cases: Cases) -> Exhibit:
         if growth_rate(scale_defects(table.model, float(factor)), table.speed) > 0.0
     )
     limit = next(unstable, "a factor of more than 8")
-    return Exhibit(
-        title="Stability chart (Strutt)",
-        caption=f"Floquet growth rate with a single β11, fn = {case.model.dynamics.natural_frequency:g} Hz, ζ = "
-        f"{case.model.dynamics.damping_ratio:g}; the black line is the limit of stability. Without damping the "
-        "tongues would touch β = 0.",
-        panels=(chart_panel(case),),
+    exhibit = stability_over_speed(case)
+    return replace(
+        exhibit,
         claims=(
             Claim(
                 statement="Threshold of the principal instability for one β, ζ = " + ", ".join(f"{z:g}" for z in zetas),
@@ -214,5 +236,5 @@ def stability(cases: Cases) -> Exhibit:
                 passed=rate < 0.0,
             ),
         ),
-        facts=(("Table 1's indexes may grow, at 750 rpm, before it becomes unstable, by", limit),),
+        facts=(*exhibit.facts, ("Table 1's indexes may grow, at 750 rpm, before it becomes unstable, by", limit)),
     )

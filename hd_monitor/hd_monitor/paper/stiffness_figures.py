@@ -10,6 +10,7 @@ from ..model.static_test import StiffnessFit, fit_stiffness
 from . import printed
 from .cases import Case, Cases
 from .exhibit import Claim, Curve, Exhibit, Panel
+from .speed_figures import resonance_speed
 
 ANGLE_LABEL = "wave-generator angle (°)"
 STIFFNESS_LABEL = "torsional stiffness (N·m/rad)"
@@ -93,17 +94,40 @@ def stiffness_panels(model: ParametricModel) -> tuple[Panel, ...]:
     )
 
 
+def stiffness_over_angle(case: Case) -> Exhibit:
+    """Stiffness over the wave-generator angle, and the reducer's characteristic numbers."""
+    model, reducer = case.model, case.model.reducer
+    pair, mount = reducer.line_frequencies(case.speed), reducer.mount.value.replace("_", " ")
+    travel = [np.rad2deg(reducer.travel_to_separate(k, window="boxcar")) for k in (1, 2, 3)]
+    return Exhibit(
+        title="Periodic time-varying torsional stiffness",
+        caption=f"z1 = {reducer.flexspline_teeth}, z2 = {reducer.circular_spline_teeth}, {mount}.",
+        panels=stiffness_panels(model),
+        facts=(
+            ("reduction", f"{reducer.reduction:g}"),
+            ("circular spline, cycles per wave-generator revolution", f"{reducer.circular_spline_order:.5f}"),
+            ("flexspline, cycles per wave-generator revolution", f"{reducer.flexspline_order:.5f}"),
+            (f"first pair at {case.speed:g} rpm", f"{pair.circular_spline:.4f} and {pair.flexspline:.4f} Hz"),
+            (f"Δf at {case.speed:g} rpm (eq. 5)", f"{reducer.line_separation(case.speed):.4f} Hz"),
+            (
+                "output travel that separates the pairs k = 1, 2, 3",
+                ", ".join(f"{x:g}°" for x in travel) + " (Hann: twice that)",
+            ),
+            ("mean stiffness J(2πfn)²", f"{model.dynamics.stiffness:,.0f} N·m/rad"),
+            ("ωo2 meets fn, fn/2, fn/3 at", ", ".join(f"{resonance_speed(case) / k:.0f}" for k in (1, 2, 3)) + " rpm"),
+            ("index of the circular spline", f"{model.circular_spline.index:.2%}"),
+            ("index of the flexspline", f"{model.flexspline.index:.2%}"),
+        ),
+    )
+
+
 def figure_4(cases: Cases) -> Exhibit:
     """Stiffness over the wave-generator angle with a defect of either spline."""
     case = cases["stiffness_sketch"]
-    reducer = case.model.reducer
-    long = stiffness_curves(case.model, reducer.reduction)
+    long = stiffness_curves(case.model, case.model.reducer.reduction)
     splines = {"circular spline": printed.CIRCULAR_SPLINE_CYCLES, "flexspline": printed.FLEXSPLINE_CYCLES}
-    return Exhibit(
-        title="Periodic time-varying torsional stiffness",
-        caption=f"z1 = {reducer.flexspline_teeth}, z2 = {reducer.circular_spline_teeth}, first harmonic of each "
-        "spline.",
-        panels=stiffness_panels(case.model),
+    return replace(
+        stiffness_over_angle(case),
         claims=tuple(
             Claim(
                 statement=f"Stiffness fluctuation of a {name} defect, cycles per wave-generator revolution",
@@ -117,18 +141,27 @@ def figure_4(cases: Cases) -> Exhibit:
     )
 
 
-def figure_7(cases: Cases) -> Exhibit:
+def static_stiffness(case: Case) -> Exhibit:
     """Static stiffness at stepped positions, the fitted curve and the index."""
-    case = cases["static_sample"]
     measured = static_measurement(case)
-    table_1 = static_measurement(replace(case, model=cases["table_1"].model))
-    kav, inertia, fn = printed.STATIC_MEAN_STIFFNESS, printed.INERTIA, printed.NATURAL_FREQUENCY
-    implied = float(np.sqrt(kav.value / inertia.value) / (2.0 * np.pi))
     return Exhibit(
         title="Static torsional stiffness over the wave-generator position",
         caption=f"Virtual test bed, {case.static_test.torque:g} N·m, every {np.rad2deg(case.static_step):g}°, readings "
         "rounded to the instruments' steps.",
         panels=(static_panel(case, measured, f"Static stiffness at {case.static_test.torque:g} N·m"),),
+        facts=(("index Δ/Kav", f"{measured.index:.2%}"), ("Kav", f"{measured.mean:,.0f} N·m/rad")),
+    )
+
+
+def figure_7(cases: Cases) -> Exhibit:
+    """Static stiffness of the sample that the paper measured."""
+    case = cases["static_sample"]
+    exhibit, measured = static_stiffness(case), static_measurement(case)
+    table_1 = static_measurement(replace(case, model=cases["table_1"].model))
+    kav, inertia, fn = printed.STATIC_MEAN_STIFFNESS, printed.INERTIA, printed.NATURAL_FREQUENCY
+    implied = float(np.sqrt(kav.value / inertia.value) / (2.0 * np.pi))
+    return replace(
+        exhibit,
         claims=(
             Claim(
                 statement="Index of stiffness fluctuation β = Δ/Kav from readings every 30° at 40 N·m",
@@ -148,5 +181,5 @@ def figure_7(cases: Cases) -> Exhibit:
                 note="The three cannot hold together; the model is given by fn, ζ and J.",
             ),
         ),
-        facts=(("index of Table 1's model on the same bed", f"{table_1.index:.2%}"),),
+        facts=(*exhibit.facts, ("index of Table 1's model on the same bed", f"{table_1.index:.2%}")),
     )

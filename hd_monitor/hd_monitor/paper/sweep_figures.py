@@ -1,5 +1,6 @@
 """Figures 10 and 11: the envelope of a sweep's response, and its dependence on the sweep's rate."""
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -48,7 +49,7 @@ class SweepResponse(NamedTuple):
     @property
     def kind(self) -> str:
         """Whether one spline's stiffness varies or both."""
-        return "double" if self.case.model.circular_spline.beta else "single"
+        return "double" if self.case.model.circular_spline.beta and self.case.model.flexspline.beta else "single"
 
     @property
     def instability_peak(self) -> float:
@@ -73,20 +74,28 @@ def sweep_response(case: Case, rate: float | None = None) -> SweepResponse:
     return SweepResponse(case, frequency[starts], np.maximum.reduceat(deviation, starts))
 
 
-def sweep_panel(response: SweepResponse, title: str) -> Panel:
-    """Draw an envelope as figures 10 and 11 do."""
-    fn, stop = response.case.model.dynamics.natural_frequency, response.case.sweep.stop
+def envelope(case: Case) -> Exhibit:
+    """Envelope of the response to the case's sweep."""
+    model, sweep, response = case.model, case.sweep, sweep_response(case)
+    betas = f"β1 = {model.flexspline.index:g}, β2 = {model.circular_spline.index:g}"
+    damped = f"{betas}, ζ = {model.dynamics.damping_ratio:g}"
+    fn = model.dynamics.natural_frequency
     marks = [(0.5, "fn/2"), (1.0, "fn"), (2.0, "2 fn")]
-    return Panel(
-        title=title,
+    panel = Panel(
+        title=damped,
         x_label="stiffness frequency ωo2/2π (Hz)",
         y_label="envelope of |θ − M0/Kav| (rad)",
         curves=(
             Curve(x=response.frequency, y=response.envelope, style="fine" if response.kind == "double" else "line"),
         ),
-        marks=tuple(Mark(at=ratio * fn, label=label) for ratio, label in marks if ratio * fn <= stop),
+        marks=tuple(Mark(at=ratio * fn, label=label) for ratio, label in marks if ratio * fn <= sweep.stop),
         log_y=True,
-        x_range=(0.0, stop),
+        x_range=(0.0, sweep.stop),
+    )
+    return Exhibit(
+        title=f"Response envelope, {response.kind} time-varying stiffness",
+        caption=f"{damped}, ωo2/2π swept from {sweep.start:g} to {sweep.stop:g} Hz at {sweep.rate:.3g} Hz/s.",
+        panels=(panel,),
     )
 
 
@@ -122,16 +131,12 @@ def _bound_claim(response: SweepResponse, bound: printed.Printed, *, above: bool
 
 
 def _exhibit(response: SweepResponse, *claims: Claim) -> Exhibit:
-    model, sweep = response.case.model, response.case.sweep
-    betas = f"β11 = {model.flexspline.index:g}, β21 = {model.circular_spline.index:g}"
-    damped = f"{betas}, ζ = {model.dynamics.damping_ratio:g}"
+    model, exhibit = response.case.model, envelope(response.case)
     speed = 60.0 * 2.0 * model.dynamics.natural_frequency / model.reducer.flexspline_order
     fastest = max(growth_rate(model, float(n)) for n in np.linspace(0.97 * speed, 1.03 * speed, 25))
-    return Exhibit(
-        title=f"Response envelope, {response.kind} time-varying stiffness",
-        caption=f"{damped}, ωo2/2π swept from {sweep.start:g} to {sweep.stop:g} Hz at "
-        f"{sweep.rate:g} Hz/s (chosen: the paper gives no rate).",
-        panels=(sweep_panel(response, damped),),
+    return replace(
+        exhibit,
+        caption=f"{exhibit.caption} The rate is chosen: the paper gives none.",
         claims=claims,
         facts=(
             ("peak of the principal instability", f"{response.instability_peak:.2e} rad"),

@@ -9,7 +9,13 @@ from hd_monitor.model import Dynamics, StiffnessSeries
 from hd_monitor.paper.cases import Range
 from hd_monitor.paper.exhibit import Outcome
 from hd_monitor.paper.records import steady_record
-from hd_monitor.paper.speed_figures import chart_panel, figure_16, principal_threshold, property_curve, stability
+from hd_monitor.paper.speed_figures import (
+    figure_16,
+    principal_threshold,
+    property_curve,
+    stability,
+    stability_over_speed,
+)
 
 
 def test_figure_16_speeds_and_peaks(cases):
@@ -66,7 +72,7 @@ def test_principal_threshold_is_four_times_the_damping(cases, zeta):
 
 def test_chart_shows_the_tongue(cases):
     case = replace(cases["stability"], speeds=Range(3059.26, 3459.26, 100.0), scales=Range(0.0, 2.0, 0.5))
-    surface = chart_panel(case).surface
+    surface = stability_over_speed(case).panels[0].surface
     assert surface is not None
     middle = surface.values[:, 2]  # ωo1 = 2ωn
     assert surface.y == pytest.approx(0.14 * np.arange(0.0, 2.1, 0.5))
