@@ -1,4 +1,6 @@
-"""A model's lines as another program computed them, to hold every way of computing them against."""
+"""The paper's model, and a model's lines as another program computed them, to hold every way of computing against."""
+
+from typing import Any
 
 from hd_monitor.model import ParametricModel, StiffnessSeries
 
@@ -13,3 +15,15 @@ LINES = {
 """Amplitudes of θ'' [rad/s²], (circular spline, flexspline) for k = 1 … 4, by speed [rpm]: Runge-Kutta at 2 kHz."""
 RK4_ERROR = 4e-4
 """Relative error of the largest of `LINES`."""
+
+
+def table_1(**changes: Any) -> ParametricModel:
+    """Model of section 3.2 of Gu et al. 2021: Table 1's indexes, fn = 55 Hz, ζ = 0.023, M0 = 10 N·m.
+
+    Keyword arguments replace fields of the model.
+    """
+    fields: dict[str, Any] = {
+        "flexspline": StiffnessSeries((0.05, 0.03, 0.02)),
+        "circular_spline": StiffnessSeries((0.06, 0.04, 0.02)),
+    }
+    return ParametricModel(**(fields | changes))

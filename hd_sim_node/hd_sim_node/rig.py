@@ -104,9 +104,10 @@ class Rig:
     Examples
     --------
     >>> import numpy as np
-    >>> from hd_monitor.model import table_1
+    >>> from hd_monitor.model import ParametricModel, StiffnessSeries
     >>> still = SpeedProgramme(times=[0.0, 1.0], speeds=[0.0, 0.0])
-    >>> chunk = Rig(table_1(), still, rate=1000.0).advance(500)
+    >>> model = ParametricModel(flexspline=StiffnessSeries((0.05, 0.03)))
+    >>> chunk = Rig(model, still, rate=1000.0).advance(500)
     >>> bool(np.abs(chunk.acceleration).max() < 1e-9)  # at rest nothing vibrates
     True
     """

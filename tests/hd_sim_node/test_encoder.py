@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.oracle import table_1
 
-from hd_monitor.model import Torque, table_1
+from hd_monitor.model import Torque
 from hd_sim_node.encoder import Joint, JointSettings
 from hd_sim_node.programme import SpeedProgramme
 from hd_sim_node.rig import Rig, Surroundings

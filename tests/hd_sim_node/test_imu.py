@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
+from tests.oracle import table_1
 
-from hd_monitor.model import ParametricModel, table_1
+from hd_monitor.model import ParametricModel
 from hd_sim_node.imu import STANDARD_GRAVITY, imu_readings
 from hd_sim_node.programme import SpeedProgramme
 from hd_sim_node.rig import Rig, Surroundings

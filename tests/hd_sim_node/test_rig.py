@@ -8,18 +8,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
-from tests.oracle import LINES, MODEL
+from tests.oracle import LINES, MODEL, table_1
 
 from hd_monitor.errors import ParameterError
-from hd_monitor.model import (
-    Dynamics,
-    ParametricModel,
-    StiffnessSeries,
-    Torque,
-    line_pairs,
-    steady_state,
-    table_1,
-)
+from hd_monitor.model import Dynamics, ParametricModel, StiffnessSeries, Torque, line_pairs, steady_state
 from hd_monitor.reducer import Mount, Reducer
 from hd_sim_node.programme import Ripple, SpeedProgramme
 from hd_sim_node.rig import PHASE_STEP, Rig, Surroundings

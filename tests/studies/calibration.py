@@ -28,12 +28,12 @@ from hd_monitor.acquisition.record import Record
 from hd_monitor.arrays import FloatArray
 from hd_monitor.identification.identifier import Identifier
 from hd_monitor.identification.result import Identification
-from hd_monitor.model import table_1
 from hd_monitor.reducer import LinePair
 from hd_monitor.settings import JointSettings
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
+from tests.oracle import table_1
 from tests.simulated.cases import Case, random_case, simulate
 from tests.studies import cramer_rao
 

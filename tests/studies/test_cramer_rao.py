@@ -4,9 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.oracle import table_1
 from tests.studies import calibration, cramer_rao
 
-from hd_monitor.model import StiffnessSeries, steady_state, table_1
+from hd_monitor.model import StiffnessSeries, steady_state
 from hd_monitor.model.simulation import constant_speed, simulate
 
 SEED = 4711

@@ -1,7 +1,7 @@
 """The parametric torsional model of a harmonic drive, shared by the monitor, the simulator and the paper's figures."""
 
 from .oscillator import Oscillator, Response, gauss_times
-from .parameters import Dynamics, ParametricModel, StiffnessSeries, Torque, table_1
+from .parameters import Dynamics, ParametricModel, StiffnessSeries, Torque
 from .stability import growth_rate, scale_defects, stability_chart
 from .steady_state import SteadyState, line_pairs, steady_state
 
@@ -19,5 +19,4 @@ __all__ = [
     "scale_defects",
     "stability_chart",
     "steady_state",
-    "table_1",
 ]

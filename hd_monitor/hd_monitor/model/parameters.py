@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -218,15 +217,3 @@ class ParametricModel:
     def static_deflection(self, output_angle: npt.ArrayLike) -> FloatArray:
         """Wind-up M/K [rad] of the output at rest at the output angle q [rad], any shape."""
         return self.torque_at(output_angle) / self.stiffness(output_angle)
-
-
-def table_1(**changes: Any) -> ParametricModel:
-    """Model of section 3.2 of Gu et al. 2021: Table 1's indexes, fn = 55 Hz, ζ = 0.023, M0 = 10 N·m.
-
-    Keyword arguments replace fields of the model.
-    """
-    fields: dict[str, Any] = {
-        "flexspline": StiffnessSeries((0.05, 0.03, 0.02)),
-        "circular_spline": StiffnessSeries((0.06, 0.04, 0.02)),
-    }
-    return ParametricModel(**(fields | changes))

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.oracle import table_1
 
 from hd_monitor.acquisition.screening import screen
-from hd_monitor.model import table_1
 from hd_monitor.model.simulation import simulate
 
 TIMES = np.arange(1000) * 1e-3

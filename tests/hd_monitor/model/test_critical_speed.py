@@ -4,8 +4,9 @@ import math
 from dataclasses import replace
 
 import pytest
+from tests.oracle import table_1
 
-from hd_monitor.model import Dynamics, ParametricModel, StiffnessSeries, Torque, growth_rate, table_1
+from hd_monitor.model import Dynamics, ParametricModel, StiffnessSeries, Torque, growth_rate
 from hd_monitor.model.critical_speed import critical_speed
 from hd_monitor.reducer import Reducer
 

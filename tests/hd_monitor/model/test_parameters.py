@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.oracle import table_1
 
 from hd_monitor.errors import ParameterError
-from hd_monitor.model import Dynamics, ParametricModel, StiffnessSeries, Torque, table_1
+from hd_monitor.model import Dynamics, ParametricModel, StiffnessSeries, Torque
 from hd_monitor.reducer import Reducer
 
 ANGLES = np.linspace(-7.0, 7.0, 501)

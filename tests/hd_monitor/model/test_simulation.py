@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 from tests import oracle
+from tests.oracle import table_1
 
 from hd_monitor.errors import ParameterError
-from hd_monitor.model import Torque, table_1
+from hd_monitor.model import Torque
 from hd_monitor.model.simulation import constant_speed, linear_sweep, simulate
 from hd_monitor.reducer import Reducer
 

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from tests.oracle import table_1
 
 from hd_monitor.errors import ParameterError
 from hd_monitor.model import (
@@ -15,7 +16,6 @@ from hd_monitor.model import (
     growth_rate,
     scale_defects,
     stability_chart,
-    table_1,
 )
 
 PRINCIPAL = 3300.0

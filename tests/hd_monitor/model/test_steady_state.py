@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from tests import oracle
+from tests.oracle import table_1
 
 from hd_monitor.errors import ParameterError
 from hd_monitor.model import (
@@ -18,7 +19,6 @@ from hd_monitor.model import (
     line_pairs,
     scale_defects,
     steady_state,
-    table_1,
 )
 from hd_monitor.model.simulation import constant_speed, simulate
 from hd_monitor.reducer import Mount, Reducer
