@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from operator import itemgetter
 from typing import Any, NamedTuple
 
 from scipy.stats import norm
@@ -68,12 +69,7 @@ class JointChange(NamedTuple):
 
 
 def compare(before: Mapping[str, Any], after: Mapping[str, Any]) -> list[JointChange]:
-    """Compare two replays' results.
-
-    Parameters
-    ----------
-    before, after : mapping
-        As ``hd-monitor replay --json`` writes them.
+    """Compare two replays' results, as ``hd-monitor replay --json`` writes them.
 
     Raises
     ------
@@ -100,10 +96,8 @@ def as_dict(changes: Sequence[JointChange], before: str, after: str) -> dict[str
             "joint": change.joint,
             "before": change.before["verdict"],
             "after": change.after["verdict"],
-            "indexes": [
-                item._asdict() | {"change": item.change, "significant": item.significant} for item in change.indexes
-            ],
-            "peaks": None if change.peaks is None else [peak._asdict() for peak in change.peaks],
+            "indexes": [i._asdict() | {"change": i.change, "significant": i.significant} for i in change.indexes],
+            "peaks": change.peaks and [peak._asdict() for peak in change.peaks],
             "rms_curve_before": change.before["rms_curve"],
             "rms_curve_after": change.after["rms_curve"],
             "changes": list(change.sentences),
@@ -160,16 +154,15 @@ def _peaks(before: Sequence[Mapping[str, Any]], after: Sequence[Mapping[str, Any
     """Highest points within the range of speeds that both curves cover."""
     if not before or not after:
         return None
-    low = max(curve[0]["rpm"] for curve in (before, after))
-    high = min(curve[-1]["rpm"] for curve in (before, after))
+    low = max(before[0]["rpm"], after[0]["rpm"])
+    high = min(before[-1]["rpm"], after[-1]["rpm"])
     margin = 0.05 * max(low, high)
-    found = []
-    for curve in (before, after):
-        inside = [Peak(b["rpm"], b["rms"]) for b in curve if low - margin <= b["rpm"] <= high + margin]
-        if not inside:
-            return None
-        found.append(max(inside, key=lambda peak: peak.rms))
-    return found[0], found[1]
+    old, new = (
+        [Peak(b["rpm"], b["rms"]) for b in curve if low - margin <= b["rpm"] <= high + margin]
+        for curve in (before, after)
+    )
+    highest = itemgetter(1)
+    return (max(old, key=highest), max(new, key=highest)) if old and new else None
 
 
 def _name(word: str) -> str:
@@ -194,18 +187,17 @@ def _index_sentence(change: IndexChange) -> str:
         return f"The {name}'s index hardly changed: {old} before, {new} after."
     verb = "rose" if change.change > 0 else "fell"
     share = f", by {100 * abs(change.change) / change.before:.0f} %" if change.before > SMALL else ""
-    return f"The {name}'s index {verb} from {old} to {new}{share}; significant (p {_p_value(change.p_value)})."
-
-
-def _p_value(value: float) -> str:
-    return "< 0.001" if value < 0.001 else f"= {value:.2g}"
+    p_value = "< 0.001" if change.p_value < 0.001 else f"= {change.p_value:.2g}"
+    return f"The {name}'s index {verb} from {old} to {new}{share}; significant (p {p_value})."
 
 
 def _peak_sentence(before: Peak, after: Peak) -> str:
     ratio = after.rms / before.rms if before.rms > 0.0 else math.inf
-    change = "is about the same" if abs(ratio - 1.0) < 0.05 else ("rose" if ratio > 1.0 else "fell")
-    share = "" if not math.isfinite(ratio) or abs(ratio - 1.0) < 0.05 else f" to {100 * ratio:.0f} %"
+    if abs(ratio - 1.0) < 0.05:
+        change = "is about the same"
+    else:
+        change = ("rose" if ratio > 1.0 else "fell") + (f" to {100 * ratio:.0f} %" if math.isfinite(ratio) else "")
     return (
-        f"The largest vibration at the speeds that both recordings have {change}{share}: {before.rms:.3g} m/s² at "
+        f"The largest vibration at the speeds that both recordings have {change}: {before.rms:.3g} m/s² at "
         f"{before.rpm:.0f} rpm before, {after.rms:.3g} m/s² at {after.rpm:.0f} rpm after."
     )

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.stats import ncx2, norm
 
-from ..arrays import FloatArray
+from ..arrays import ComplexArray, FloatArray
 from ..identification.fit.indexes import stiffness_indexes
 from ..identification.fit.unknowns import Unknowns
 from ..identification.result import Identification
@@ -57,18 +57,18 @@ class Harmonic(NamedTuple):
 class BothSplines(NamedTuple):
     """Every β of the circular spline and of the flexspline."""
 
-    circular_spline: tuple[Harmonic, ...]
-    flexspline: tuple[Harmonic, ...]
+    circular_spline: list[Harmonic]
+    flexspline: list[Harmonic]
 
 
 def harmonics(found: Identification) -> BothSplines:
     """Magnitude and phase of every identified β."""
-    covariance = found.beta_covariance
-    parts = []
-    for spline, phasors in enumerate((found.circular_spline, found.flexspline)):
-        own = [None] * len(phasors) if covariance is None else list(covariance[spline])
-        parts.append(tuple(_harmonic(k + 1, complex(z), c) for k, (z, c) in enumerate(zip(phasors, own, strict=True))))
-    return BothSplines(*parts)
+
+    def of(spline: int, phasors: ComplexArray) -> list[Harmonic]:
+        own = [None] * len(phasors) if found.beta_covariance is None else found.beta_covariance[spline]
+        return [_harmonic(k, complex(z), c) for k, (z, c) in enumerate(zip(phasors, own, strict=True), start=1)]
+
+    return BothSplines(of(0, found.circular_spline), of(1, found.flexspline))
 
 
 def magnitude_interval(size: float, std: float) -> tuple[float, float]:

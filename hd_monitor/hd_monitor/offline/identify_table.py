@@ -73,19 +73,17 @@ def _dynamics(joint: JointIdentification, found: Identification) -> Iterator[str
     load = Estimate.gaussian(found.load_fluctuation, found.load_fluctuation_std)
     yield f"  {'load fluctuation':<22} {_value(load, 1.0)} N·m"
     speed = found.critical_speed
-    yield f"  {'unstable from':<22} " + (
-        f"{speed:.0f} rpm of the wave generator" if math.isfinite(speed) else "no speed"
-    )
+    unstable = f"{speed:.0f} rpm of the wave generator" if math.isfinite(speed) else "no speed"
+    yield f"  {'unstable from':<22} {unstable}"
 
 
 def _directions(joint: JointIdentification) -> Iterator[str]:
     orders = joint.settings.reducer.output_orders
     for d in joint.directions:
-        yield f"  {d.name}: {d.segments} strokes, {d.samples} samples" + (
-            f"; a larger line at {d.rival:.0f}" if d.rival is not None else ""
-        )
-        for name, order, *row in zip(_SPLINES, orders, d.amplitude, d.std, d.chance, d.dominance, strict=True):
-            size, std, chance, dominance = row
+        rival = f"; a larger line at {d.rival:.0f}" if d.rival is not None else ""
+        yield f"  {d.name}: {d.segments} strokes, {d.samples} samples{rival}"
+        rows = zip(_SPLINES, orders, d.amplitude, d.std, d.chance, d.dominance, strict=True)
+        for name, order, size, std, chance, dominance in rows:
             yield (
                 f"    {name:<16} {order:>5g}/rev  {size:.4g} ± {std:.2g}, by chance {chance:.1g}, the larger one with "
                 f"probability {dominance:.3f}"

@@ -62,17 +62,13 @@ def rank_tooth_pairs(
         if pair.circular_spline - pair.flexspline != WAVE_GENERATOR_LOBES:
             raise ParameterError(f"{pair.flexspline}/{pair.circular_spline} teeth do not differ by 2: not looked for")
     lowest = min(LineOrders.of_pair(pair.lines(0.5)).reference_orders.min() for pair in pairs)
-    orders = np.arange(
-        max(math.floor(lowest), 2),
-        math.ceil(max(LineOrders.of_pair(pair.lines()).reference_orders.max() for pair in pairs)) + 1,
-    )
-    if isinstance(data, JointSamples):
-        samples = data
-    else:
-        samples, source = samples_of_records(data), "joint_effort"
+    highest = max(LineOrders.of_pair(pair.lines()).reference_orders.max() for pair in pairs)
+    orders = np.arange(max(math.floor(lowest), 2), math.ceil(highest) + 1)
+    if not isinstance(data, JointSamples):
+        data, source = samples_of_records(data), "joint_effort"
     span = float(min(pair.flexspline for pair in pairs)), float(max(pair.circular_spline for pair in pairs))
     cutter = JointSegmentCutter(source, span, minimum_speed)
-    segments = cutter.add(samples) + cutter.finish()
+    segments = cutter.add(data) + cutter.finish()
     scan = OrderScan(segments, orders)
     travel = float(np.ptp(np.concatenate([segment.angle for segment in segments]))) if segments else 0.0
     multiples = [(0.5, *range(2, int(orders[-1] // pair.circular_spline) + 1)) for pair in pairs]
@@ -115,7 +111,7 @@ class ToothCheck:
                 self._append(assessment.joint_samples)
             return
         for record in assessment.records:
-            if len(record) and self._turns(record):
+            if len(record) and float(np.abs(record.speed).max()) >= self._minimum_speed:
                 self._append(samples_of_records([record]))
 
     def cut(self) -> None:
@@ -129,9 +125,6 @@ class ToothCheck:
         columns = ("times", "angle", "speed", "effort")
         gathered = {name: np.concatenate([getattr(part, name) for part in self._parts]) for name in columns}
         return rank_tooth_pairs(JointSamples(**gathered), source=self._source, minimum_speed=self._minimum_speed)
-
-    def _turns(self, record: Record) -> bool:
-        return float(np.abs(record.speed).max()) >= self._minimum_speed
 
     def _append(self, samples: JointSamples) -> None:
         if samples.times[0] + self._offset < self._end:  # the stamps were set back, or the next recording began

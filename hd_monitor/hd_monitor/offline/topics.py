@@ -72,10 +72,11 @@ class TopicFinder:
 
     def _find(self, source: Source, name: str) -> str:
         found = self._of_type(source)
-        if name in self._remap:
-            return self._exact(found, self._absolute(self._remap[name]), source)
-        if self._namespace is not None:
-            return self._exact(found, self._absolute(name), source)
+        if name in self._remap or self._namespace is not None:
+            exact = self._absolute(self._remap.get(name, name))
+            if any(topic.name == exact for topic in found):
+                return exact
+            raise BagError(self._missing(source, exact))
         named = [topic.name for topic in found if _ends(topic.name, name)]
         if (plain := f"/{name.lstrip('/')}") in named:
             return plain
@@ -87,32 +88,32 @@ class TopicFinder:
             raise BagError(
                 f"{', '.join(named)} could all be {name}; choose one with --namespace or --remap {name}:={named[0]}"
             )
-        raise BagError(f"no {name} ({source.type}) was recorded: {self._instead(source, name)}")
-
-    def _exact(self, found: Sequence[RawTopic], name: str, source: Source) -> str:
-        if any(topic.name == name for topic in found):
-            return name
-        raise BagError(f"no {name} ({source.type}) was recorded: {self._instead(source, name)}")
+        raise BagError(self._missing(source, name))
 
     def _absolute(self, name: str) -> str:
-        if name.startswith("/"):
-            return name
         namespace = (self._namespace or "").strip("/")
-        return f"/{namespace}/{name}" if namespace else f"/{name}"
+        return name if name.startswith("/") else f"/{namespace}/{name}".replace("//", "/")
 
     def _speaks(self, source: Source, topic: RawTopic) -> bool:
         """Whether a topic of an unexpected name is meant: an array says so by its label, other types by themselves."""
         return source.type != "std_msgs/Float64MultiArray" or BLOCK_LABEL in self._labels(topic.name)
 
-    def _instead(self, source: Source, name: str) -> str:
-        for topic in self._topics:
-            if _ends(topic.name, name):
-                return f"{topic.name} is there, but as {topic.type.replace('/msg/', '/')}"
-        if any(_ends(topic.name, name) for topic in self._empty):
-            return "the topic is there, but without a message"
-        there = [f"{topic.name} ({topic.type.replace('/msg/', '/')})" for topic in self._topics]
-        listed = ", ".join(there[:6]) + (f" and {len(there) - 6} more" if len(there) > 6 else "")
-        return f"it holds {listed}; see --remap and input.source"
+    def _missing(self, source: Source, name: str) -> str:
+        """Say that a topic was not recorded, and what is there instead."""
+        others = [topic for topic in self._topics if _ends(topic.name, name)]
+        if others:
+            instead = f"{others[0].name} is there, but as {_ros_type(others[0])}"
+        elif any(_ends(topic.name, name) for topic in self._empty):
+            instead = "the topic is there, but without a message"
+        else:
+            there = [f"{topic.name} ({_ros_type(topic)})" for topic in self._topics]
+            listed = ", ".join(there[:6]) + (f" and {len(there) - 6} more" if len(there) > 6 else "")
+            instead = f"it holds {listed}; see --remap and input.source"
+        return f"no {name} ({source.type}) was recorded: {instead}"
+
+
+def _ros_type(topic: RawTopic) -> str:
+    return topic.type.replace("/msg/", "/")
 
 
 def _ends(topic: str, name: str) -> bool:

@@ -5,29 +5,16 @@ from collections.abc import Sequence
 from matplotlib.figure import Figure
 
 from ...orders.rms_curve import SpeedBin
-from .style import AFTER, BEFORE, INK, SOFT, Look, legend_above, one_panel, room_above
+from .style import AFTER, BEFORE, INK, SOFT, Look, legend_above, name_at_top, one_panel, room_above
 
-_CURVE = Look(label="RMS", colour=INK, marker="o", line="-")
-
-
-def rms_plot(bins: Sequence[SpeedBin], *, critical: Sequence[tuple[float, str]], title: str) -> Figure:
-    """Draw a property curve; `critical` are speeds [rpm] with their names."""
-    return _drawn([(bins, _CURVE)], critical, title)
+_ALONE = Look(label="RMS", colour=INK, marker="o", line="-")
 
 
-def compared_rms_plot(
-    before: Sequence[SpeedBin], after: Sequence[SpeedBin], *, critical: Sequence[tuple[float, str]], title: str
-) -> Figure:
-    """Draw the property curves before and after a change over each other."""
-    return _drawn([(before, BEFORE), (after, AFTER)], critical, title)
-
-
-def _drawn(
-    curves: Sequence[tuple[Sequence[SpeedBin], Look]], critical: Sequence[tuple[float, str]], title: str
-) -> Figure:
+def rms_plot(*curves: Sequence[SpeedBin], critical: Sequence[tuple[float, str]], title: str) -> Figure:
+    """Draw a property curve, or those before and after a change; `critical` are speeds [rpm] with their names."""
     with one_panel(title=title, xlabel="wave-generator speed [rpm]", ylabel="RMS of the vibration [m/s²]") as drawn:
         figure, axes = drawn
-        for bins, look in curves:
+        for bins, look in zip(curves, (BEFORE, AFTER) if len(curves) > 1 else (_ALONE,), strict=True):
             speeds, values = [b.rpm for b in bins], [b.rms for b in bins]
             axes.plot(
                 speeds, values, look.line, marker=look.marker, markersize=4.5, color=look.colour, label=look.label
@@ -39,10 +26,7 @@ def _drawn(
             room_above(axes, 0.12)
         for speed, name in inside:
             axes.axvline(speed, color=SOFT, linestyle=":", linewidth=1.2)
-            axes.annotate(
-                name, (speed, 0.985), xycoords=("data", "axes fraction"), xytext=(3, 0), textcoords="offset points",
-                va="top", fontsize=9, color=SOFT,
-            )  # fmt: skip
+            name_at_top(axes, speed, name, color=SOFT)
         if len(curves) > 1:
             legend_above(axes)
         return figure

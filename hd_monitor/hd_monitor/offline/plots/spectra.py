@@ -15,6 +15,7 @@ from .style import (
     SOFT,
     draw_spectrum,
     legend_above,
+    name_at_top,
     natural_frequency_label,
     one_panel,
     room_above,
@@ -39,10 +40,7 @@ def spectrum_plot(spectrum: Spectrum, pairs: Sequence[LinePair], *, title: str, 
                         label=look.label if number == 0 else "_", zorder=5, markeredgecolor="white",
                     )  # fmt: skip
             if pair.flexspline < spectrum.axis[-1]:
-                axes.annotate(
-                    f"k = {number + 1}", (pair.flexspline, 0.985), xycoords=("data", "axes fraction"), xytext=(3, 0),
-                    textcoords="offset points", rotation=90, ha="left", va="top", fontsize=9,
-                )  # fmt: skip
+                name_at_top(axes, pair.flexspline, f"k = {number + 1}", rotation=90)
         if natural_frequency < spectrum.axis[-1]:
             label = natural_frequency_label(natural_frequency)
             axes.axvline(natural_frequency, color=SOFT, linestyle=":", linewidth=1.4, label=label)

@@ -106,6 +106,14 @@ def legend_above(axes: Axes, **options: Any) -> None:
     axes.legend(**({"loc": "lower right", "bbox_to_anchor": (1.0, 1.0), "ncols": 3, "borderaxespad": 0.2} | options))
 
 
+def name_at_top(axes: Axes, position: float, name: str, **options: Any) -> None:
+    """Write a name at the upper edge, to the right of a position on the x-axis."""
+    axes.annotate(
+        name, (position, 0.985), xycoords=("data", "axes fraction"), xytext=(3, 0), textcoords="offset points",
+        va="top", fontsize=9, **options,
+    )  # fmt: skip
+
+
 def natural_frequency_label(frequency: float) -> str:
     """Name a natural frequency [Hz] in a legend."""
     return f"natural frequency {frequency:.1f} Hz"

@@ -9,7 +9,7 @@ from ...orders.rms_curve import SpeedBin
 from ...reducer import Reducer
 from ..comparison import JointChange
 from ..plots.index_change import index_change_plot
-from ..plots.rms_curve import compared_rms_plot
+from ..plots.rms_curve import rms_plot
 from ..plots.style import png
 from .page import write_page
 from .pictures import FEWEST_SPEEDS, pair_speeds
@@ -41,7 +41,7 @@ def _pictures(change: JointChange) -> dict[str, bytes]:
     curves = [[SpeedBin(b["rpm"], b["rms"], b["samples"]) for b in side["rms_curve"]] for side in change[1:3]]
     if max(map(len, curves)) >= FEWEST_SPEEDS:
         critical = _critical(change.after)
-        drawn["property_curves"] = compared_rms_plot(*curves, critical=critical, title="Vibration over speed")
+        drawn["property_curves"] = rms_plot(*curves, critical=critical, title="Vibration over speed")
     if change.indexes:
         limits = {"warn": change.after["warn_limit"], "error": change.after["error_limit"]}
         drawn["indexes"] = index_change_plot(change.indexes, **limits, title="Stiffness indexes before and after")

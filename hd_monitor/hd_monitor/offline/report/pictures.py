@@ -84,7 +84,7 @@ class _View:
 
 
 def _zoom(view: _View) -> Figure | None:
-    zoom = view.collector.best.zoom if view.collector.best is not None else None
+    zoom = view.collector.best.zoom if view.collector.best else None
     if zoom is None:
         return None
     title = view.last.verdict.reason.partition(";")[0]  # its first sentence

@@ -1,5 +1,7 @@
 """Spectra over time, in bounded memory."""
 
+import itertools
+from operator import itemgetter
 from typing import NamedTuple
 
 import numpy as np
@@ -52,19 +54,14 @@ class WaterfallAccumulator:
             self._rows.append((first, last, row))
         self._waiting = (self._waiting + 1) % self._together
         if len(self._rows) > _MOST_ROWS:
-            self._merge()
-
-    def _merge(self) -> None:
-        pairs = zip(self._rows[::2], self._rows[1::2], strict=False)
-        self._rows = [(a[0], b[1], np.maximum(a[2], b[2])) for a, b in pairs]
-        self._together *= 2
-        self._waiting = 0
+            pairs = itertools.batched(self._rows[:_MOST_ROWS], 2)
+            self._rows = [(a[0], b[1], np.maximum(a[2], b[2])) for a, b in pairs]
+            self._together *= 2
+            self._waiting = 0
 
     def result(self) -> Waterfall | None:
         """Return the waterfall; None with fewer than two spectra."""
         if len(self._rows) < 2:
             return None
-        rows = sorted(self._rows, key=lambda row: row[0])
-        times = np.array([0.5 * (first + last) for first, last, _ in rows])
-        frequencies = (np.arange(_BINS) + 0.5) * self._nyquist / _BINS
-        return Waterfall(times, frequencies, np.array([amplitude for *_, amplitude in rows]))
+        first, last, amplitude = map(np.array, zip(*sorted(self._rows, key=itemgetter(0)), strict=True))
+        return Waterfall(0.5 * (first + last), (np.arange(_BINS) + 0.5) * self._nyquist / _BINS, amplitude)
