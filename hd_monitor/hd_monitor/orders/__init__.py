@@ -4,6 +4,7 @@ The regression on lines, from data to what is known of them::
 
     joint samples → joint_segment: cut, averaged
     → segment_products (whitened by whitening) or scan (every order of a range): Products
+    → pooling: segments added up by direction
     → regression: pool, solve with the orders of line_orders → LineFit: phasors, covariance, chances, evidence
 
 A line's order counts its cycles per output revolution. Reference orders are where there is no line: what a fit finds

@@ -88,8 +88,6 @@ class LineResidual:
         The same sums of the prediction.
     weight : ndarray, shape (harmonics,)
         Expected squares of the residual's sums if there is nothing but noise.
-    travel : float
-        Way [rad] that the output went.
     overdispersion : Overdispersion
         How much the segments contradict each other.
     """
@@ -97,16 +95,13 @@ class LineResidual:
     sums: ComplexArray
     predicted: ComplexArray
     weight: FloatArray
-    travel: float
     overdispersion: Overdispersion
 
     @classmethod
     def empty(cls, harmonics: int) -> "LineResidual":
         """Return the sums of no data."""
         nothing = np.zeros((harmonics, 2 * SIDE + 1), dtype=np.complex128)
-        return cls(
-            sums=nothing, predicted=nothing, weight=np.zeros(harmonics), travel=0.0, overdispersion=Overdispersion()
-        )
+        return cls(sums=nothing, predicted=nothing, weight=np.zeros(harmonics), overdispersion=Overdispersion())
 
     def plus(
         self, item: LinearisedSegment, covariance: FloatArray, floor: NoiseFloor, reducer: Reducer
@@ -138,7 +133,6 @@ class LineResidual:
             sums=sums,
             predicted=predicted,
             weight=weight,
-            travel=self.travel + segment.travel,
             overdispersion=self.overdispersion.plus(item.equations, covariance),
         )
 
@@ -148,7 +142,6 @@ class LineResidual:
             sums=keep * self.sums,
             predicted=keep * self.predicted,
             weight=keep * keep * self.weight,
-            travel=keep * self.travel,
             overdispersion=self.overdispersion.faded(keep),
         )
 

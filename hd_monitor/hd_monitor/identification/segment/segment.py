@@ -36,8 +36,8 @@ class Segment:
 
     Attributes
     ----------
-    start, period : float
-        Time of the first sample and sample period [s].
+    period : float
+        Sample period [s].
     acceleration : ndarray, shape (samples,)
         θ'' [rad/s²]; 0 where left out.
     used : ndarray of bool, shape (samples,)
@@ -60,7 +60,6 @@ class Segment:
         Samples of the sensor behind it.
     """
 
-    start: float
     period: float
     acceleration: FloatArray
     used: BoolArray
@@ -86,11 +85,6 @@ class Segment:
     def duration(self) -> float:
         """Length [s]."""
         return len(self) * self.period
-
-    @property
-    def travel(self) -> float:
-        """Length of the output's path [rad]: a stroke there and back counts twice."""
-        return float(np.abs(np.diff(self.angle)).sum())
 
     @property
     def frequencies(self) -> FloatArray:
@@ -183,7 +177,6 @@ class SegmentBuilder:
         motion = Motion(angle, speed, own, known, step)
         at_steps, at_gauss = paths_along(motion, self.reducer, self.harmonics, self.load_orders, steps)
         return Segment(
-            start=record.start + signal.first * period,
             period=step,
             acceleration=signal.values,
             used=signal.used,

@@ -9,9 +9,9 @@ from scipy.stats import norm
 from scipy.stats import t as t_distribution
 
 from ...limitation import Limitation, LimitationCode, blocker
+from ...orders.pooling import GroupFit
 from ...orders.regression import CHANCE, LineFit
 from ...reducer import LinePair
-from .pooling import GroupFit
 
 AGREEMENT = 0.9
 """Confidence that each direction alone must have in the spline that is named."""

@@ -11,6 +11,7 @@ from ...arrays import FloatArray
 from ...limitation import Limitation, LimitationCode, blocker
 from ...orders.joint_segment import JointSegment, JointSegmentCutter, one_speed
 from ...orders.line_orders import LineOrders
+from ...orders.pooling import SegmentPool
 from ...orders.regression import LineFit, solve
 from ...reducer import LinePair
 from ...settings import JointSettings
@@ -19,7 +20,6 @@ from ..teeth.candidates import ToothPair, surroundings, with_neighbours
 from ..teeth.ranking import rank
 from .agreement import DirectionEvidence, disagreements
 from .limitations import blockers_of_input, doubts_of_result
-from .pooling import SegmentPool
 
 BETTER_TEETH = math.log(1e4)
 """Difference of log evidence, odds of 10 000 to 1, by which other teeth must lead; several are compared."""
@@ -64,10 +64,9 @@ class SensorlessIdentifier:
         motor = (reduction, 2.0 * reduction)
         orders = [LineOrders.of_pair(LinePair(cs, fs), k, motor) for k in range(1, settings.analysis.harmonics + 1)]
         self._candidates = with_neighbours(settings.reducer)
-        self._around = surroundings(self._candidates, motor)
         minimum_speed = settings.analysis.minimum_speed * 2.0 * np.pi / 60.0 / reduction
         self._cutter = JointSegmentCutter(settings.input.source, (cs, fs), minimum_speed)
-        self._pool = SegmentPool([*orders, self._around], settings.analysis.memory)
+        self._pool = SegmentPool([*orders, surroundings(self._candidates, motor)], settings.analysis.memory)
         self._messages = 0
         self._usable = 0
         self._latest: Identification | None = None

@@ -31,7 +31,7 @@ NEAR = 4.5
 """Difference of tooth numbers up to which pairs share a line, or less travel than that blurs one into the other."""
 
 LEAST_TURNS = 0.2
-"""Output revolutions below which the order spectrum is too blurred to suspect anything."""
+"""Output revolutions below which the order spectrum is too blurred for any conclusion."""
 
 SHARE = 0.02
 """Part of the largest line that an unexplained one must have to matter."""

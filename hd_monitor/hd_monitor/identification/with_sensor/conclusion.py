@@ -27,7 +27,7 @@ def conclude(context: Context, state: State, fit: Fit) -> Identification:
     """Pack the result of a state whose newest fit is given."""
     u, reducer, residual, coverage = context.unknowns, context.settings.reducer, state.residual, state.coverage
     assert state.floor is not None
-    predictor, values, information = context.predictor(state), fit.values, context.known(state)
+    predictor, values, information = context.predictor(state.setup), fit.values, context.known(state)
     inflation = max(residual.inflation(coverage.span), residual.overdispersion.inflation)
     noise = inflation * information.covariance(state.active)
     systematic = _systematic(u, values, residual, coverage.span)

@@ -96,9 +96,9 @@ class Context:
             setup = replace(setup, reference_torque=kept_from_zero)
         return (segment if setup.mounting > 0.0 else segment.mirrored()), setup
 
-    def predictor(self, state: State) -> Predictor:
-        """Predictor in the units of a state."""
-        return self._predictor(state.setup.reference_torque)
+    def predictor(self, setup: Setup) -> Predictor:
+        """Predictor in the unit of load fluctuations that a setup has found."""
+        return Predictor(unknowns=self.unknowns, given=self.given, reference_torque=setup.reference_torque)
 
     def known(self, state: State) -> Information:
         """Return all that is known of the unknowns: what was given, and what a state has learnt."""
@@ -108,7 +108,7 @@ class Context:
         """Return the problem of explaining some segments with what a state allows."""
         return Problem(
             segments=segments,
-            predictor=self.predictor(state),
+            predictor=self.predictor(state.setup),
             prior=prior,
             floor=signal_level(segments) if state.floor is None else state.floor,
             active=state.active,
@@ -128,16 +128,13 @@ class Context:
             residual = residual.plus(item, fit.covariance, floor, self.settings.reducer)
         return Unexplained(floor, residual)
 
-    def _predictor(self, torque: float) -> Predictor:
-        return Predictor(unknowns=self.unknowns, given=self.given, reference_torque=torque)
-
     def _find_nominal(self, records: Sequence[Record]) -> float:
         """Torque [N·m] at which the lines would indicate a defect of typical size."""
         unit = self.given.stiffness * _TRIAL_WIND_UP
         u, segment = self.unknowns, self.builder.build(records, unit)
         problem = Problem(
             segments=[segment],
-            predictor=self._predictor(unit),
+            predictor=self.predictor(Setup(reference_torque=unit)),
             prior=self.prior,
             floor=signal_level([segment]),
             active=u.mask(u.stiffness),

@@ -1,4 +1,4 @@
-"""Misfit: nothing is made of pure noise, what the noise floor does not show widens the intervals."""
+"""Misfit: pure noise widens nothing, and what the noise floor does not show widens the intervals."""
 
 import numpy as np
 import pytest

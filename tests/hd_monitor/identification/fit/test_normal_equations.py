@@ -56,7 +56,7 @@ def test_the_cost_of_the_truth_is_what_noise_leads_to_expect(clean):
     assert sum(c.cost for c in costs) / sum(c.freedom for c in costs) == pytest.approx(1.0, abs=0.025)
 
 
-def test_the_gradients_covariance_is_the_information(clean):
+def test_the_covariance_of_the_score_is_the_information(clean):
     squares = []
     for seed in range(1, 121):
         equations = at_truth(clean, seed).equations

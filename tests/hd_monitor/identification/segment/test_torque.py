@@ -1,4 +1,4 @@
-"""The known torque: what is real of a measured torque survives, its noise does not."""
+"""The known torque: the true part of a measured torque remains, its noise does not."""
 
 import numpy as np
 import pytest

@@ -80,7 +80,7 @@ def test_an_unusable_segment_changes_nothing_but_says_why(estimator, records, st
     assert estimator.update(after, records[8:10]).unusable is None
 
 
-def test_all_motion_is_fitted_again_while_it_is_at_hand(estimator, records, state):
+def test_all_motion_is_fitted_again_while_it_is_kept(estimator, records, state):
     while state.seconds <= WINDOW + 4.0:
         restarted, before = state.schedule.restarted, state.seconds
         first = round(before)

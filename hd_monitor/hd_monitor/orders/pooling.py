@@ -7,11 +7,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...orders.joint_segment import JointSegment
-from ...orders.line_orders import LineOrders
-from ...orders.regression import LineFit, Products, pool, solve
-from ...orders.segment_products import products_of_segment, residual_of_segment
-from ...orders.whitening import learn_whitening
+from .joint_segment import JointSegment
+from .line_orders import LineOrders
+from .regression import LineFit, Products, pool, solve
+from .segment_products import products_of_segment, residual_of_segment
+from .whitening import learn_whitening
 
 LEAST_SHARE = 0.1
 """Part of the motion that a direction must have to count."""
