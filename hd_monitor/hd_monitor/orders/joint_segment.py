@@ -57,8 +57,6 @@ class JointSegment:
         The vibration signal: effort, velocity or acceleration, in its own unit.
     starts : ndarray of bool, shape (rows,)
         True where a row does not follow its predecessor without a gap.
-    step : ndarray, shape (rows,)
-        Output angle between successive samples that were averaged into a row [rad].
     averaged : int
         Samples averaged into a row, 1 for none.
     rate : float
@@ -70,7 +68,6 @@ class JointSegment:
     speed: FloatArray
     values: FloatArray
     starts: BoolArray
-    step: FloatArray
     averaged: int
     rate: float
 
@@ -95,7 +92,8 @@ class JointSegment:
         order = np.asarray(orders, dtype=np.float64)
         columns = line_columns(self.angle, order)
         if self.averaged > 1:
-            columns *= np.tile(diric(np.multiply.outer(self.step, order), self.averaged), 2)
+            step = self.speed / (self.rate * self.averaged)  # rad between successive samples of a row
+            columns *= np.tile(diric(np.multiply.outer(step, order), self.averaged), 2)
         return columns
 
 
@@ -212,7 +210,6 @@ def _segments(rows: FloatArray, good: BoolArray, period: float, averaged: int) -
         speed=np.abs(pace),
         values=values,
         starts=np.concatenate([[True], np.diff(whole) != averaged]) | starts[whole],
-        step=pace * period,
         averaged=averaged,
         rate=1.0 / (period * averaged),
     )

@@ -137,12 +137,9 @@ class LineFit:
     @property
     def chances(self) -> FloatArray:
         """Probability, for each line, that noise alone makes it this large (F test against the reference orders)."""
-        lines = self.phasors.size
-        ratios = []
-        for line, phasor in enumerate(self.phasors.tolist()):
-            own = self.covariance[np.ix_([line, line + lines], [line, line + lines])]
-            parts = np.array([phasor.real, phasor.imag])
-            ratios.append(float(parts @ np.linalg.solve(own, parts)) / 2.0)
+        line, parts = np.arange(self.phasors.size), np.stack([self.phasors.real, self.phasors.imag], axis=1)
+        own = self.covariance.reshape(2, line.size, 2, line.size)[:, line, :, line]
+        ratios = (parts * np.linalg.solve(own, parts[:, :, None])[:, :, 0]).sum(axis=1) / 2.0
         return np.asarray(f_distribution.sf(ratios, 2, self.freedom))
 
     @property

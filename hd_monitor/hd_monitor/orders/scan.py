@@ -67,18 +67,16 @@ class OrderScan:
         sums = []
         for direction in (1, -1):
             chosen = [number for number, (segment, _) in enumerate(self._usable) if segment.direction == direction]
-            count = parts if parts == 1 else min(parts, int(self._travel(chosen) / PART_TRAVEL))
-            for group in np.array_split(chosen, count) if chosen and count else []:
+            if not chosen:
+                continue
+            travel = float(np.ptp([self._usable[number][0].angle[[0, -1]] for number in chosen]))
+            count = parts if parts == 1 else min(parts, int(travel / PART_TRAVEL))
+            for group in np.array_split(chosen, count) if count else []:
                 every = (self._products(*self._usable[number]) for number in group)
                 total = pool(products for products in every if products is not None)
                 if total is not None:
                     sums.append(total)
         return sums
-
-    def _travel(self, group: Sequence[int]) -> float:
-        """Range of the output angle over these segments [rad]."""
-        angles = [self._usable[number][0].angle[[0, -1]] for number in group]
-        return float(np.ptp(angles)) if angles else 0.0
 
     def _products(self, segment: JointSegment, trend: FloatArray) -> Products | None:
         """Products of every order's whitened columns where its frequency is in the band; None of a constant signal."""

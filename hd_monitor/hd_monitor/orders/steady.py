@@ -27,21 +27,23 @@ class SteadySegment:
 
     def add(self, record: Record) -> None:
         """Append a record, or start again with it where it does not continue or the speed has changed."""
-        first, last = float(record.speed.min()), float(record.speed.max())
-        reference = float(self._parts[0].speed.mean()) if self._parts else 0.5 * (first + last)
-        if not self._parts or not record.continues or not _near(first, last, reference):
+        if not (record.continues and self._fits(record)):
             self._parts.clear()
-        reference = reference if self._parts else 0.5 * (first + last)
-        if not _near(first, last, reference) or abs(reference) <= self._minimum:
-            self._parts.clear()
-            return
-        self._parts.append(record)
+        if self._fits(record):
+            self._parts.append(record)
         while len(self._parts) > 1 and self._too_long():
             self._parts.popleft()
 
     def interrupt(self) -> None:
         """Forget the segment: nothing followed it."""
         self._parts.clear()
+
+    def _fits(self, record: Record) -> bool:
+        """Whether a record keeps the segment's speed or, where there is no segment yet, one speed of its own."""
+        slowest, fastest = float(record.speed.min()), float(record.speed.max())
+        speed = float(self._parts[0].speed.mean()) if self._parts else 0.5 * (slowest + fastest)
+        margin = _SPEED_TOLERANCE * abs(speed)
+        return abs(speed) > self._minimum and speed - margin <= slowest and fastest <= speed + margin
 
     def _too_long(self) -> bool:
         rest, newest = self._parts[1], self._parts[-1]
@@ -51,8 +53,3 @@ class SteadySegment:
     def parts(self) -> tuple[Record, ...]:
         """Return the records of the segment, none while the speed is not steady."""
         return tuple(self._parts)
-
-
-def _near(first: float, last: float, reference: float) -> bool:
-    margin = _SPEED_TOLERANCE * abs(reference)
-    return abs(first - reference) <= margin and abs(last - reference) <= margin

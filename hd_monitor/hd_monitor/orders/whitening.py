@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from scipy.linalg import solve_toeplitz
+from scipy.signal import lfilter
 
 from ..arrays import BoolArray, FloatArray
 from ..robust import clip
@@ -46,10 +47,7 @@ def learn_whitening(residuals: Sequence[FloatArray], taps: int = TAPS) -> FloatA
 
 def whiten(coefficients: FloatArray, columns: FloatArray) -> FloatArray:
     """Filter every column, shape (rows, columns); rows that look back over a start are to be left out."""
-    filtered = coefficients[0] * columns
-    for lag, coefficient in enumerate(coefficients[1:].tolist(), start=1):
-        filtered[lag:] += coefficient * columns[:-lag]
-    return np.asarray(filtered, dtype=np.float64)
+    return np.asarray(lfilter(coefficients, [1.0], columns, axis=0), dtype=np.float64)
 
 
 def settled(starts: BoolArray, coefficients: FloatArray) -> BoolArray:

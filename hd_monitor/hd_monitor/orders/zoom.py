@@ -88,9 +88,8 @@ class Zoom:
                 f"the frequencies {first:g} to {last:g} Hz leave the band 0 to {0.5 / period:g} Hz of samples "
                 f"{period:g} s apart; choose another pair or a faster input"
             )
-        self.count, self.period, self.bins = count, period, bins
+        self.count = count
         self.frequencies: FloatArray = np.linspace(first, last, bins)
-        self.resolution = WIDTH / (count * period)
         self._window: FloatArray = np.asarray(get_window("hann", count), dtype=np.float64)
         self._transform = ZoomFFT(count, [first, last], m=bins, fs=1.0 / period, endpoint=True)
 

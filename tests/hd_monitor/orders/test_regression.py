@@ -150,7 +150,6 @@ def test_too_little_data_gives_no_fit():
         speed=brief.speed[few],
         values=brief.values[few],
         starts=brief.starts[few],
-        step=brief.step[few],
     )
     assert products_of_segment(brief, ORDERS, np.ones(9)) is None
 

@@ -164,7 +164,8 @@ class SegmentBuilder:
         places = signal.first + signal.factor * np.arange(signal.values.size)
         angle, speed, measured = record.angle[places], record.speed[places], record.torque[places]
         step = period * signal.factor
-        steps = self._substeps(line, step)
+        fastest = math.tau * max(FREQUENCY_MARGIN * self.natural_frequency, 0.7 * line)  # rad/s
+        steps = max(1, math.ceil(fastest * step / LARGEST_PHASE_STEP))
         if steps > MOST_SUBSTEPS:
             raise ParameterError(
                 f"at {top_speed:.3g} rad/s and {1.0 / step:.4g} samples per second the lines and natural frequency, "
@@ -190,10 +191,6 @@ class SegmentBuilder:
             raw_highest=0.5 / period,
             raw_samples=int(np.isfinite(raw).sum()),
         )
-
-    def _substeps(self, line: float, step: float) -> int:
-        fastest = math.tau * max(FREQUENCY_MARGIN * self.natural_frequency, 0.7 * line)
-        return max(1, math.ceil(fastest * step / LARGEST_PHASE_STEP))
 
     def _slow(self, motion: Motion, values: FloatArray, used: BoolArray) -> FloatArray:
         """Directions below about 1 Hz, of the joint's own acceleration, of foreign tones; of gravity if inertial."""
