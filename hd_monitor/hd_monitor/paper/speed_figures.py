@@ -14,6 +14,7 @@ from .exhibit import Claim, Curve, Exhibit, Mark, Panel, Surface
 from .records import steady_record
 
 _THRESHOLD_ACCURACY = 1.5e-4  # of β
+_RESONANCES = {"fn/3": 1 / 3, "fn/2": 0.5, "fn": 1.0, "2 fn": 2.0}  # multiples of fn
 
 
 class PropertyCurve(NamedTuple):
@@ -49,14 +50,6 @@ def resonance_speed(case: Case) -> float:
     return 60.0 * case.model.dynamics.natural_frequency / case.model.reducer.circular_spline_order
 
 
-def resonance_marks(case: Case) -> tuple[Mark, ...]:
-    """Mark the speeds at which ωo2 meets fn/k, and 2fn."""
-    return tuple(
-        Mark(at=resonance_speed(case) * times, label=label)
-        for times, label in ((1 / 3, "fn/3"), (0.5, "fn/2"), (1.0, "fn"), (2.0, "2 fn"))
-    )
-
-
 def property_curve(case: Case, speeds: FloatArray | None = None) -> PropertyCurve:
     """Compute the steady RMS at each speed [rpm], by default the case's, by harmonic balance."""
     speeds = case.speeds.values if speeds is None else speeds
@@ -66,15 +59,17 @@ def property_curve(case: Case, speeds: FloatArray | None = None) -> PropertyCurv
 
 
 def curve_panel(case: Case, curve: PropertyCurve, title: str, top: float | None = None) -> Panel:
-    """Draw a property curve as figures 16 and 18 do."""
-    low, high = float(curve.speed[0]), float(curve.speed[-1])
+    """Draw a property curve as figures 16 and 18 do, marking the speeds at which ωo2 meets fn/k, and 2fn."""
+    resonances = {label: resonance_speed(case) * n for label, n in _RESONANCES.items()}
     top = curve.highest[1] if top is None else top
     return Panel(
         title=title,
         x_label="wave-generator speed (rpm)",
         y_label="RMS of tangential acceleration (g)",
         curves=(Curve(x=curve.speed, y=curve.rms, style="dotted points"),),
-        marks=tuple(mark for mark in resonance_marks(case) if low <= mark.at <= high),
+        marks=tuple(
+            Mark(at=n, label=label) for label, n in resonances.items() if curve.speed[0] <= n <= curve.speed[-1]
+        ),
         y_range=(0.0, 1.25 * top) if top > 0.0 else None,
     )
 

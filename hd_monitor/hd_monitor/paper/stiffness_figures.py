@@ -69,40 +69,34 @@ def static_panel(case: Case, measured: StiffnessFit, title: str) -> Panel:
     )
 
 
-def stiffness_panels(model: ParametricModel) -> tuple[Panel, ...]:
-    """Draw figure 4: each spline's stiffness, then both over as many revolutions as they take to come back."""
-    near = stiffness_curves(model, 2.0)
-    far = stiffness_curves(model, model.reducer.reduction)
-    degrees = np.rad2deg(near["angle"])
-    return (
-        Panel(
-            title="One defect at a time",
-            x_label=ANGLE_LABEL,
-            y_label=STIFFNESS_LABEL,
-            x_step=90.0,
-            curves=(
-                Curve(x=degrees, y=near["flexspline"], label="flexspline defect"),
-                Curve(x=degrees, y=near["circular spline"], label="circular spline defect", style="dashed"),
-            ),
-        ),
-        Panel(
-            title="Both, over one output revolution",
-            x_label="wave-generator revolutions",
-            y_label=STIFFNESS_LABEL,
-            curves=(Curve(x=far["angle"] / (2.0 * np.pi), y=far["both"]),),
-        ),
-    )
-
-
 def stiffness_over_angle(case: Case) -> Exhibit:
-    """Stiffness over the wave-generator angle, and the reducer's characteristic numbers."""
+    """Each spline's stiffness, both over as many revolutions as they take to come back, and characteristic numbers."""
     model, reducer = case.model, case.model.reducer
     pair, mount = reducer.line_frequencies(case.speed), reducer.mount.value.replace("_", " ")
+    near, far = (stiffness_curves(model, revolutions) for revolutions in (2.0, reducer.reduction))
+    degrees = np.rad2deg(near["angle"])
     travel = [np.rad2deg(reducer.travel_to_separate(k, window="boxcar")) for k in (1, 2, 3)]
     return Exhibit(
         title="Periodic time-varying torsional stiffness",
         caption=f"z1 = {reducer.flexspline_teeth}, z2 = {reducer.circular_spline_teeth}, {mount}.",
-        panels=stiffness_panels(model),
+        panels=(
+            Panel(
+                title="One defect at a time",
+                x_label=ANGLE_LABEL,
+                y_label=STIFFNESS_LABEL,
+                x_step=90.0,
+                curves=(
+                    Curve(x=degrees, y=near["flexspline"], label="flexspline defect"),
+                    Curve(x=degrees, y=near["circular spline"], label="circular spline defect", style="dashed"),
+                ),
+            ),
+            Panel(
+                title="Both, over one output revolution",
+                x_label="wave-generator revolutions",
+                y_label=STIFFNESS_LABEL,
+                curves=(Curve(x=far["angle"] / (2.0 * np.pi), y=far["both"]),),
+            ),
+        ),
         facts=(
             ("reduction", f"{reducer.reduction:g}"),
             ("circular spline, cycles per wave-generator revolution", f"{reducer.circular_spline_order:.5f}"),
