@@ -3,10 +3,9 @@
 import re
 import tempfile
 from collections import Counter
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from contextlib import ExitStack
 from pathlib import Path, PurePath
-from types import TracebackType
 from typing import Self
 
 import numpy as np
@@ -58,17 +57,12 @@ class Bag:
         except BaseException:
             self._stack.close()
             raise
-        if not any(topic.messages for topic in self.topics):
-            self._stack.close()
-            raise BagError(f"{self.path} holds no messages: nothing was recorded, or nothing of it was saved")
 
     def __enter__(self) -> Self:
         """Return the recording, which is open already."""
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         """Close the recording."""
         self._stack.close()
 
@@ -128,11 +122,17 @@ class Bag:
                 self._note(str(error))
         if not self._parts:
             raise BagError(f"{self.path}: none of its {len(files)} files can be read; give another recording")
-        whole = [reader for _, reader in self._parts if not isinstance(reader, Walk)]
-        spans = [reader.span for reader in whole if reader.span]
-        if spans and len(whole) == len(self._parts):
+        readers = [reader for _, reader in self._parts]
+        spans = [reader.span for reader in readers if not isinstance(reader, Walk) and reader.span]
+        if spans and not any(isinstance(reader, Walk) for reader in readers):
             self.span = min(spans)[0], max(end for _, end in spans)
-        return _merged(topic for _, reader in self._parts for topic in reader.topics())
+        counts: Counter[tuple[str, str]] = Counter()
+        for reader in readers:
+            for name, kind, messages in reader.topics():
+                counts[name, kind] += messages
+        if not counts.total():
+            raise BagError(f"{self.path} holds no messages: nothing was recorded, or nothing of it was saved")
+        return tuple(RawTopic(*topic, count) for topic, count in sorted(counts.items()))
 
     def _files(self) -> list[Path]:
         """Return the storage files, in the order that the metadata gives if there are any."""
@@ -222,10 +222,3 @@ def _is_storage(file: Path) -> bool:
 def _natural_order(file: Path) -> list[tuple[int, str]]:
     """Key that puts bag_2 before bag_10."""
     return [(int(part or 0), text) for text, part in re.findall(r"(\D*)(\d*)", file.name)]
-
-
-def _merged(topics: Iterable[RawTopic]) -> tuple[RawTopic, ...]:
-    counts: Counter[tuple[str, str]] = Counter()
-    for topic in topics:
-        counts[topic.name, topic.type] += topic.messages
-    return tuple(RawTopic(name, kind, count) for (name, kind), count in sorted(counts.items()))

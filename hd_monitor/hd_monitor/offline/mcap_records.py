@@ -13,7 +13,7 @@ from zlib import crc32
 import numpy as np
 from mcap.data_stream import ReadDataStream
 from mcap.opcode import Opcode
-from mcap.records import Chunk, ChunkIndex
+from mcap.records import Chunk
 from numpy.typing import NDArray
 
 from .compression import decompress
@@ -21,6 +21,7 @@ from .compression import decompress
 MAGIC = b"\x89MCAP0\r\n"
 
 _HEAD = struct.Struct("<BQ")  # code and length of what follows
+HEAD_BYTES = _HEAD.size
 _MESSAGE_HEAD = 22  # channel, sequence, times of recording and of publishing
 _LARGEST = 1 << 31
 
@@ -48,14 +49,14 @@ def heads(file: BinaryIO, name: str) -> Iterator[Head]:
     """
     size = file.seek(0, 2)
     at = len(MAGIC)
-    while at + _HEAD.size <= size:
+    while at + HEAD_BYTES <= size:
         file.seek(at)
-        code, length = _HEAD.unpack(file.read(_HEAD.size))
+        code, length = _HEAD.unpack(file.read(HEAD_BYTES))
         if code == Opcode.DATA_END:
             return
         if length > _LARGEST or not 0 < code < 0x80:
             raise DamageError(f"{name} is damaged at byte {at}: what follows cannot be read")
-        begin = at + _HEAD.size
+        begin = at + HEAD_BYTES
         at = begin + length
         yield Head(code, begin, min(at, size), at <= size)
     raise DamageError(f"{name} is cut off after {size} bytes: the recording was not closed")
@@ -71,21 +72,6 @@ def parse_chunk(body: bytes) -> Chunk:
     """
     chunk: Chunk = Chunk.read(ReadDataStream(BytesIO(body)))
     return chunk
-
-
-def read_chunk(file: BinaryIO, index: ChunkIndex) -> bytes:
-    """Read the chunk that an index record describes; return its content, as `checked_content` does.
-
-    Raises
-    ------
-    DamageError
-        If the file ends before the chunk does.
-    """
-    file.seek(index.chunk_start_offset + _HEAD.size)
-    chunk = parse_chunk(file.read(max(index.chunk_length - _HEAD.size, 0)))
-    if len(chunk.data) < index.compressed_size:
-        raise DamageError(f"the chunk at byte {index.chunk_start_offset} is cut off")
-    return checked_content(chunk)
 
 
 def checked_content(chunk: Chunk) -> bytes:
@@ -139,7 +125,7 @@ class Records(NamedTuple):
     def parse(cls, content: bytes) -> Self:
         """Take the content of a chunk apart."""
         found: list[int] = []
-        at, head, last = 0, _HEAD.size, len(content) - _HEAD.size
+        at, head, last = 0, HEAD_BYTES, len(content) - HEAD_BYTES
         unpack, append = _HEAD.unpack_from, found.append
         while at <= last:  # the one loop over single messages: as little in it as will do
             append(at)
@@ -147,7 +133,7 @@ class Records(NamedTuple):
         if at > len(content):
             found.pop()
         starts = np.array(found, dtype=np.int64)
-        begins = starts + _HEAD.size
+        begins = starts + HEAD_BYTES
         ends = begins + _numbers(content, "<u8", starts + 1).astype(np.int64)
         is_message = _numbers(content, "u1", starts) == Opcode.MESSAGE
         is_whole = ends - begins >= _MESSAGE_HEAD

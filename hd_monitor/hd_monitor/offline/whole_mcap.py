@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from .batches import Batch, RawTopic
 from .compression import decompress_where_packed
-from .mcap_records import DamageError, Records, read_chunk
+from .mcap_records import HEAD_BYTES, DamageError, Records, checked_content, parse_chunk
 
 _CHANNELS = 1 << 16
 
@@ -93,9 +93,13 @@ def _holding(chunks: Iterable[ChunkIndex], channels: Collection[int]) -> list[Ch
 
 
 def _read(file: BinaryIO, chunk: ChunkIndex, places: NDArray[np.intp]) -> Batch:
-    records = Records.parse(read_chunk(file, chunk))
-    times = records.messages.times
     begin = chunk.chunk_start_offset
+    file.seek(begin + HEAD_BYTES)
+    found = parse_chunk(file.read(max(chunk.chunk_length - HEAD_BYTES, 0)))
+    if len(found.data) < chunk.compressed_size:
+        raise DamageError(f"the chunk at byte {begin} is cut off")
+    records = Records.parse(checked_content(found))
+    times = records.messages.times
     if not records.whole:
         raise DamageError(f"the records of the chunk at byte {begin} do not fill it")
     if times.size and not chunk.message_start_time <= int(times.min()) <= int(times.max()) <= chunk.message_end_time:

@@ -1,5 +1,6 @@
 """The indexes over time with their error bars, the limits and the verdict's level."""
 
+import itertools
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -53,19 +54,16 @@ def indexes_plot(
 
 def _levels(axes: Any, seconds: FloatArray, step: float, levels: Sequence[int]) -> None:
     """Draw the level as a ribbon, hatched, so that its colours are not needed."""
-    shown = set()
-    start = 0
-    for place in range(1, len(levels) + 1):
-        if place < len(levels) and levels[place] == levels[start] and seconds[place] - seconds[place - 1] < 2 * step:
-            continue
-        level = levels[start]
+    changes = np.flatnonzero((np.diff(levels) != 0) | (np.diff(seconds) >= 2 * step)) + 1
+    named: set[int] = set()
+    for first, end in itertools.pairwise([0, *changes.tolist(), len(levels)]):
+        level = levels[first]
         axes.axvspan(
-            seconds[start] - step, seconds[place - 1], facecolor=_LEVEL_COLOURS[level], alpha=0.55,
+            seconds[first] - step, seconds[end - 1], facecolor=_LEVEL_COLOURS[level], alpha=0.55,
             hatch=_LEVEL_HATCHES[level], edgecolor="white", linewidth=0,
-            label="_" if level in shown else _LEVELS[level],
+            label="_" if level in named else _LEVELS[level],
         )  # fmt: skip
-        shown.add(level)
-        start = place
+        named.add(level)
     axes.set_yticks([])
     axes.set_ylim(0, 1)
     axes.grid(visible=False)

@@ -51,7 +51,7 @@ class Collector:
         self._first: int | None = None
         self.seconds = 0.0
         self.motion_seconds = 0.0
-        self._tail: deque[tuple[FloatArray, FloatArray]] = deque()
+        self._tail = deque([(np.empty(0), np.empty(0))])
         self._kept = 0
 
     def add(self, assessment: Assessment) -> None:
@@ -73,8 +73,6 @@ class Collector:
 
     def tail(self) -> tuple[FloatArray, FloatArray]:
         """Output angle [rad] and vibration signal of the recording's last minutes."""
-        if not self._tail:
-            return np.empty(0), np.empty(0)
         angles, values = zip(*self._tail, strict=True)
         return np.concatenate(angles), np.concatenate(values)
 

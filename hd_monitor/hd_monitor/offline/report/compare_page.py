@@ -18,20 +18,7 @@ _NAMES = ("property_curves", "indexes")
 
 
 def write_comparison(folder: Path, content: Mapping[str, Any], changes: Sequence[JointChange]) -> Path:
-    """Write the page of a comparison and its pictures into a folder, which is made if it is not there.
-
-    Parameters
-    ----------
-    folder : Path
-    content : mapping
-        The comparison's JSON.
-    changes : sequence of JointChange
-
-    Raises
-    ------
-    ParameterError
-        If the folder cannot be written.
-    """
+    """Write the page of a comparison, whose JSON is `content`, as `write_page` does."""
     sections = [{"joint": change.joint, "change": change, "pictures": _pictures(change)} for change in changes]
     return write_page(folder, "comparison.html.j2", content, sections, _NAMES)
 

@@ -19,27 +19,7 @@ PAGE = "index.html"
 def write_report(
     folder: Path, content: Mapping[str, Any], joints: Sequence[JointResult], collectors: Mapping[str, Collector]
 ) -> Path:
-    """Write the page of a replay and its pictures into a folder, which is made if it is not there.
-
-    Parameters
-    ----------
-    folder : Path
-    content : mapping
-        The replay's JSON.
-    joints : sequence of JointResult
-    collectors : mapping of str to Collector
-        By joint.
-
-    Returns
-    -------
-    Path
-        The page.
-
-    Raises
-    ------
-    ParameterError
-        If the folder cannot be written.
-    """
+    """Write the page of a replay, whose JSON is `content`, as `write_page` does; `collectors` are by joint."""
     sections = []
     for result, entry in zip(joints, content["joints"], strict=True):
         collector = collectors[result.plan.joint]
@@ -62,8 +42,8 @@ def write_page(
 ) -> Path:
     """Fill in one of the package's page templates; write the page and its sections' pictures into a folder.
 
-    Pictures of these `names` that an earlier report left and this one does not have are taken away: they would seem
-    to belong.
+    The folder is made if it is not there. Pictures of these `names` that an earlier report left and this one does not
+    have are taken away: they would seem to belong.
 
     Returns
     -------
