@@ -8,21 +8,23 @@ import numpy as np
 
 from ...acquisition.record import JointSamples
 from ...arrays import FloatArray
-from ...limitation import Limitation, LimitationCode, blocker
+from ...limitation import Limitation, LimitationCode, blocker, doubt
 from ...orders.joint_segment import JointSegment, JointSegmentCutter, one_speed
 from ...orders.line_orders import LineOrders
 from ...orders.pooling import SegmentPool
 from ...orders.regression import LineFit, solve
-from ...reducer import LinePair
+from ...reducer import LinePair, Mount
 from ...settings import JointSettings
 from ..result import Identification, LineEstimate
 from ..teeth.candidates import ToothPair, surroundings, with_neighbours
 from ..teeth.ranking import rank
 from .agreement import DirectionEvidence, disagreements
-from .limitations import blockers_of_input, doubts_of_result
 
 BETTER_TEETH = math.log(1e4)
 """Difference of log evidence, odds of 10 000 to 1, by which other teeth must lead; several are compared."""
+
+_ENOUGH_MESSAGES = 100
+_NOTABLE, _NEARLY_ALL = 0.1, 0.9  # parts of the motion that are too fast
 
 
 class SensorlessIdentifier:
@@ -93,9 +95,7 @@ class SensorlessIdentifier:
             self._latest = self._identify()
             self._stale = False
         if self._latest is None:
-            blockers = blockers_of_input(
-                self._settings.input.source, messages=self._messages, usable=self._usable, too_fast=self._too_fast
-            )
+            blockers = self._blockers_of_input()
             return Identification.none(blockers, relative=True) if blockers else None
         return self._latest
 
@@ -141,7 +141,7 @@ class SensorlessIdentifier:
             signal_to_noise=10.0 * float(np.log10(0.5 * total**2 / np.mean([fit.noise**2 for fit in fits]))),
             misfit=float(np.mean([fit.floor for fit in fits])),
             limitations=(
-                *doubts_of_result(index, reducer, one_speed=one_speed(self._pool.segments), too_fast=self._too_fast),
+                *self._doubts(index),
                 *self._other_teeth(),
                 *disagreements(self._directions, reducer.output_orders, settings.diagnosis.confidence),
             ),
@@ -166,6 +166,28 @@ class SensorlessIdentifier:
         # Only both lines are evidence: one of them fits two pairs
         better = ranking.lead(ToothPair.of(given)) >= BETTER_TEETH and ranking.ranked[0].lines_found == 2
         return (ranking.contradiction(given),) if better else ()
+
+    def _doubts(self, index: LinePair) -> Iterator[Limitation]:
+        """Doubts beside the name that the shares suggest, apart from the evidence itself."""
+        reducer = self._settings.reducer
+        # The line of the spline that stands still has exactly the order 2 of the wave generator.
+        at_order_two = index.circular_spline if reducer.mount is Mount.CIRCULAR_SPLINE_FIXED else index.flexspline
+        if at_order_two == max(index):
+            yield doubt(LimitationCode.MOTOR_SHARES_LINE)
+        speed = one_speed(self._pool.segments)
+        if math.isfinite(speed):
+            lower, upper = (order * speed / math.tau for order in reducer.output_orders)
+            yield doubt(LimitationCode.ONE_SPEED, lower_hz=lower, upper_hz=upper)
+        if self._too_fast > _NOTABLE:
+            yield doubt(LimitationCode.PARTLY_TOO_FAST, share=self._too_fast)
+
+    def _blockers_of_input(self) -> tuple[Limitation, ...]:
+        """What keeps the input from ever yielding a result; empty if nothing does so far."""
+        if self._messages >= _ENOUGH_MESSAGES and not self._usable:
+            effort = self._settings.input.source == "joint_effort"
+            field, other = ("effort", "joint_velocity") if effort else ("velocity", "joint_effort")
+            return (blocker(LimitationCode.SIGNAL_MISSING, field=field, other=other),)
+        return (blocker(LimitationCode.ALL_TOO_FAST),) if self._too_fast > _NEARLY_ALL else ()
 
     @property
     def _too_fast(self) -> float:
