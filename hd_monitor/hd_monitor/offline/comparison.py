@@ -108,8 +108,8 @@ def as_dict(changes: Sequence[JointChange], before: str, after: str) -> dict[str
 
 
 def _joint_change(before: Mapping[str, Any], after: Mapping[str, Any]) -> JointChange:
-    differing = [name for name in _GEOMETRY if _parameter(before, name) != _parameter(after, name)]
-    if differing:
+    given, given_now = (entry.get("parameters", {}) for entry in (before, after))
+    if differing := [name for name in _GEOMETRY if given.get(name) != given_now.get(name)]:
         raise BagError(
             f"joint {before['joint']!r}: {', '.join(differing)} differ between the two; results of different reducers "
             "cannot be compared: replay both with the right --params"
@@ -127,14 +127,9 @@ def _joint_change(before: Mapping[str, Any], after: Mapping[str, Any]) -> JointC
         sentences.append(_peak_sentence(*peaks))
     elif before["rms_curve"] and after["rms_curve"]:
         sentences.append("The two recordings have no speed in common, so that their vibration cannot be compared.")
-    changed = [name for name in _BASIS if _parameter(before, name) != _parameter(after, name)]
-    if changed:
+    if changed := [name for name in _BASIS if given.get(name) != given_now.get(name)]:
         sentences.append(f"Mind that the two were analysed with different values of {', '.join(changed)}.")
     return JointChange(before["joint"], before, after, indexes, peaks, tuple(sentences))
-
-
-def _parameter(entry: Mapping[str, Any], name: str) -> Any:
-    return entry.get("parameters", {}).get(name)
 
 
 def _index_changes(before: Mapping[str, Any], after: Mapping[str, Any]) -> tuple[IndexChange, ...]:

@@ -16,16 +16,7 @@ _PAPER = {"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 1.5}
 
 
 def verdict_picture(zoom: ZoomSpectrum, *, title: str, subtitle: str) -> Figure:
-    """Draw a zoom spectrum under its verdict.
-
-    Parameters
-    ----------
-    zoom : ZoomSpectrum
-    title : str
-        The verdict in words.
-    subtitle : str
-        Where it comes from: the joint and the speed, say.
-    """
+    """Draw a zoom spectrum under its verdict in words; `subtitle` says where it comes from: the speed, say."""
     with one_panel(xlabel="frequency [Hz]", ylabel=f"amplitude [{_UNIT}]") as (figure, axes):
         draw_spectrum(axes, zoom.frequencies, zoom.amplitude)
         room_above(axes, 0.22)
@@ -39,27 +30,20 @@ def verdict_picture(zoom: ZoomSpectrum, *, title: str, subtitle: str) -> Figure:
             f"{subtitle}   {note}", (0.0, 1.0), xycoords="axes fraction", xytext=(0, 3), textcoords="offset points",
             fontsize=9, color=SOFT, va="bottom",
         )  # fmt: skip
-        axes.set_title("\n".join(textwrap.wrap(_with_fixed_numbers(title), _TITLE_WIDTH)), pad=20.0)
+        fixed = title.replace(" ± ", "\u00a0±\u00a0").replace(" %", "\u00a0%")  # a number stays with what follows it
+        axes.set_title("\n".join(textwrap.wrap(fixed, _TITLE_WIDTH)), pad=20.0)
         return figure
 
 
 def _mark(axes: Axes, look: Look, frequency: float, amplitude: float, side: str) -> None:
     top = axes.get_ylim()[1]
+    height = np.format_float_positional(amplitude, precision=3, fractional=False, trim="-")
     axes.vlines(frequency, 0.0, amplitude, color=look.colour, linewidth=2.2, linestyle=look.line)
     axes.plot(frequency, amplitude, look.marker, color=look.colour, markersize=8, zorder=5)
     left, right = axes.get_xlim()
     beside = 0.012 * (right - left) * (-1.0 if side == "right" else 1.0)
     axes.annotate(
-        f"{look.label}\n{frequency:.2f} Hz\n{_short(amplitude)} {_UNIT}",
+        f"{look.label}\n{frequency:.2f} Hz\n{height} {_UNIT}",
         (frequency, amplitude), xytext=(frequency + beside, min(amplitude + 0.02 * top, 0.84 * top)),
         ha=side, va="bottom", fontsize=10, color=look.colour, fontweight="bold", linespacing=1.25, bbox=_PAPER,
     )  # fmt: skip
-
-
-def _with_fixed_numbers(title: str) -> str:
-    """Keep a number on one line with its uncertainty and its unit."""
-    return title.replace(" ± ", "\u00a0±\u00a0").replace(" %", "\u00a0%")
-
-
-def _short(value: float) -> str:
-    return np.format_float_positional(value, precision=3, fractional=False, trim="-")
