@@ -1,13 +1,11 @@
 """Which pictures a joint's report has; one that the recording does not carry is left out. The page captions them."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
 
-from ...acquisition.record import Record
 from ...assessment import Assessment
 from ...reducer import LinePair, Reducer
 from ..plots.indexes import indexes_plot
@@ -21,6 +19,18 @@ from .collector import Collector
 from .phase_trace import phase_trace
 from .spectra import amplitude_spectrum, order_spectrum
 
+PICTURE_NAMES = (
+    "zoom_spectrum",
+    "indexes",
+    "order_spectrum",
+    "spectrum",
+    "order_map",
+    "waterfall",
+    "rms_curve",
+    "line_amplitudes",
+    "phase_trace",
+)
+"""The verdict's first."""
 FEWEST_SPEEDS = 3
 """Speeds from which on something is drawn over speed."""
 _ORDERS_SHOWN = 1201
@@ -44,132 +54,77 @@ def pictures(last: Assessment | None, timeline: Sequence[dict[str, Any]], collec
     """Return a joint's pictures as PNG by their names, in the order of the page."""
     if last is None:
         return {}
-    view = _View(last, timeline, collector)
-    drawn = {name: draw(view) for name, draw in _PICTURES.items()}
-    return {name: png(figure) for name, figure in drawn.items() if figure is not None}
+    natural_frequency = last.identification.natural_frequency if last.identification else float("nan")
+    if not np.isfinite(natural_frequency):
+        natural_frequency = collector.settings.dynamics.natural_frequency
+    drawn = {
+        **dict(_over_time(last, timeline, collector)),
+        **dict(_over_speed(last, collector, natural_frequency)),
+        **dict(_best_stretch(last, collector, natural_frequency)),
+    }
+    return {name: png(drawn[name]) for name in PICTURE_NAMES if name in drawn}
 
 
-@dataclass(frozen=True, slots=True)
-class _View:
-    """What the pictures are drawn from: the last assessment, the JSON's timeline and what was collected."""
-
-    last: Assessment
-    timeline: Sequence[dict[str, Any]]
-    collector: Collector
-
-    @property
-    def harmonics(self) -> int:
-        return self.collector.settings.analysis.harmonics
-
-    @property
-    def natural_frequency(self) -> float:
-        """The one found [Hz], or else the one given."""
-        found = self.last.identification.natural_frequency if self.last.identification else float("nan")
-        return found if np.isfinite(found) else self.collector.settings.dynamics.natural_frequency
-
-    @property
-    def pair_speeds(self) -> list[tuple[float, str]]:
-        return pair_speeds(self.last.settings.reducer, self.natural_frequency, self.harmonics)
-
-    @property
-    def steady(self) -> Record | None:
-        """The stretch that shows the lines best."""
-        return self.collector.best.steady if self.collector.best is not None else None
-
-    @property
-    def rpm(self) -> float:
-        """Mean wave-generator speed of that stretch [rpm]; 0 without one."""
-        mean = 0.0 if self.steady is None else float(self.steady.speed.mean())
-        return abs(mean) * self.last.settings.reducer.reduction * 30.0 / np.pi
+def _over_time(
+    last: Assessment, timeline: Sequence[dict[str, Any]], collector: Collector
+) -> Iterator[tuple[str, Figure]]:
+    """Draw what the recording shows from its start to its end, and the orders of its last minutes."""
+    if any(entry["flexspline_index"] is not None for entry in timeline):
+        limits = last.settings.diagnosis
+        relative = bool(last.identification and last.identification.relative)
+        title = "Relative indexes over time" if relative else "Stiffness indexes over time"
+        yield (
+            "indexes",
+            indexes_plot(timeline, warn=limits.warn_index, error=limits.error_index, relative=relative, title=title),
+        )
+    if (waterfall := collector.waterfall.result()) is not None:
+        yield "waterfall", waterfall_plot(waterfall, title="Vibration over frequency and time")
+    angle, values = collector.tail()
+    if angle.size >= 100:
+        k = last.strongest_pair
+        pair = LinePair(*(k * order for order in last.settings.reducer.output_orders))
+        margin = 4.0 * (pair.flexspline - pair.circular_spline)
+        axis = np.linspace(pair.circular_spline - margin, pair.flexspline + margin, _ORDERS_SHOWN)
+        spectrum = order_spectrum(angle, values, axis)
+        unit = unit_of(collector.settings.input.source)
+        travel = float(np.degrees(np.ptp(angle)))
+        # A Hann window separates lines two of its cycles apart; the pair is 2k cycles apart in a revolution.
+        note = "" if travel * k >= _SEPARATING_TRAVEL else f"{travel:.0f}° of travel do not separate the lines"
+        title = f"Order spectrum, line pair k = {k}"
+        yield "order_spectrum", order_plot(spectrum, pair, title=title, unit=unit, note=note)
 
 
-def _zoom(view: _View) -> Figure | None:
-    zoom = view.collector.best.zoom if view.collector.best else None
-    if zoom is None:
-        return None
-    title = view.last.verdict.reason.partition(";")[0]  # its first sentence
-    return verdict_picture(zoom, title=title, subtitle=f"zoom spectrum at {view.rpm:.0f} rpm")
+def _over_speed(last: Assessment, collector: Collector, natural_frequency: float) -> Iterator[tuple[str, Figure]]:
+    speeds = pair_speeds(last.settings.reducer, natural_frequency, collector.settings.analysis.harmonics)
+    order_map = collector.order_map.result()
+    if order_map is not None and order_map.speeds.size >= FEWEST_SPEEDS:
+        title = "Vibration over order and speed"
+        yield "order_map", order_map_plot(order_map, natural_frequency=natural_frequency, title=title)
+    if len(last.rms_curve) >= FEWEST_SPEEDS:
+        critical = [*speeds, (2.0 * speeds[0][0], "principal instability")]
+        yield "rms_curve", rms_plot(last.rms_curve, critical=critical, title="Vibration over speed")
+    lines = collector.lines.result()
+    if len({line.rpm for line in lines}) >= FEWEST_SPEEDS:
+        resonances = [speed for speed, _ in speeds]
+        yield "line_amplitudes", lines_plot(lines, resonances=resonances, title="Line amplitudes over speed")
 
 
-def _orders(view: _View) -> Figure | None:
-    angle, values = view.collector.tail()
-    if angle.size < 100:
-        return None
-    k = view.last.strongest_pair
-    pair = LinePair(*(k * order for order in view.last.settings.reducer.output_orders))
-    margin = 4.0 * (pair.flexspline - pair.circular_spline)
-    axis = np.linspace(pair.circular_spline - margin, pair.flexspline + margin, _ORDERS_SHOWN)
-    spectrum = order_spectrum(angle, values, axis)
-    unit = unit_of(view.collector.settings.input.source)
-    travel = float(np.degrees(np.ptp(angle)))
-    # A Hann window separates lines that are two of its cycles apart; the pair is 2k cycles apart in a revolution.
-    note = "" if travel * k >= _SEPARATING_TRAVEL else f"{travel:.0f}° of travel do not separate the lines"
-    return order_plot(spectrum, pair, title=f"Order spectrum, line pair k = {k}", unit=unit, note=note)
-
-
-def _spectrum(view: _View) -> Figure | None:
-    if view.steady is None:
-        return None
-    pairs = [view.last.settings.reducer.line_frequencies(view.rpm, k) for k in range(1, view.harmonics + 1)]
-    title = f"Spectrum at {view.rpm:.0f} rpm"
-    return spectrum_plot(amplitude_spectrum(view.steady), pairs, title=title, natural_frequency=view.natural_frequency)
-
-
-def _map(view: _View) -> Figure | None:
-    order_map = view.collector.order_map.result()
-    if order_map is None or order_map.speeds.size < FEWEST_SPEEDS:
-        return None
-    return order_map_plot(order_map, natural_frequency=view.natural_frequency, title="Vibration over order and speed")
-
-
-def _waterfall(view: _View) -> Figure | None:
-    waterfall = view.collector.waterfall.result()
-    return waterfall_plot(waterfall, title="Vibration over frequency and time") if waterfall is not None else None
-
-
-def _rms(view: _View) -> Figure | None:
-    bins, speeds = view.last.rms_curve, view.pair_speeds
-    if len(bins) < FEWEST_SPEEDS:
-        return None
-    critical = [*speeds, (2.0 * speeds[0][0], "principal instability")]
-    return rms_plot(bins, critical=critical, title="Vibration over speed")
-
-
-def _lines(view: _View) -> Figure | None:
-    lines = view.collector.lines.result()
-    if len({line.rpm for line in lines}) < FEWEST_SPEEDS:
-        return None
-    resonances = [speed for speed, _ in view.pair_speeds]
-    return lines_plot(lines, resonances=resonances, title="Line amplitudes over speed")
-
-
-def _indexes(view: _View) -> Figure | None:
-    if all(entry["flexspline_index"] is None for entry in view.timeline):
-        return None
-    last, limits = view.last, view.last.settings.diagnosis
-    relative = bool(last.identification and last.identification.relative)
-    title = "Relative indexes over time" if relative else "Stiffness indexes over time"
-    return indexes_plot(view.timeline, warn=limits.warn_index, error=limits.error_index, relative=relative, title=title)
-
-
-def _phase(view: _View) -> Figure | None:
-    trace = phase_trace(view.steady, view.last.settings.reducer) if view.steady is not None else None
-    if trace is None:
-        return None
-    return phase_plot(trace, title=f"Phase trace at {trace.rpm:.0f} rpm, {trace.band[0]:.0f}–{trace.band[1]:.0f} Hz")
-
-
-_PICTURES: dict[str, Callable[[_View], Figure | None]] = {
-    "zoom_spectrum": _zoom,
-    "indexes": _indexes,
-    "order_spectrum": _orders,
-    "spectrum": _spectrum,
-    "order_map": _map,
-    "waterfall": _waterfall,
-    "rms_curve": _rms,
-    "line_amplitudes": _lines,
-    "phase_trace": _phase,
-}
-"""The verdict's first."""
-
-PICTURE_NAMES = tuple(_PICTURES)
+def _best_stretch(last: Assessment, collector: Collector, natural_frequency: float) -> Iterator[tuple[str, Figure]]:
+    """Draw the stretch that shows the lines best."""
+    best, reducer = collector.best, last.settings.reducer
+    if best is None:
+        return
+    steady = best.steady
+    rpm = 0.0 if steady is None else abs(float(steady.speed.mean())) * reducer.reduction * 30.0 / np.pi
+    if best.zoom is not None:
+        title = last.verdict.reason.partition(";")[0]  # its first sentence
+        yield "zoom_spectrum", verdict_picture(best.zoom, title=title, subtitle=f"zoom spectrum at {rpm:.0f} rpm")
+    if steady is None:
+        return
+    pairs = [reducer.line_frequencies(rpm, k) for k in range(1, collector.settings.analysis.harmonics + 1)]
+    title = f"Spectrum at {rpm:.0f} rpm"
+    spectrum = amplitude_spectrum(steady)
+    yield "spectrum", spectrum_plot(spectrum, pairs, title=title, natural_frequency=natural_frequency)
+    if (trace := phase_trace(steady, reducer)) is not None:
+        title = f"Phase trace at {trace.rpm:.0f} rpm, {trace.band[0]:.0f}–{trace.band[1]:.0f} Hz"
+        yield "phase_trace", phase_plot(trace, title=title)
