@@ -62,10 +62,16 @@ def recover_clock(times: FloatArray, period: float | None = None) -> Clock | Non
     Samples that arrive in another order than their stamps were either reordered on the way (sorting makes the stamps
     even) or have jittering stamps (sorting would scramble the signal). They are sorted where that leaves even stamps.
     """
-    by_stamp = np.unique(times, return_index=True)[1]
-    if by_stamp.size < 3:
+    order = np.arange(times.size)
+    rising = bool((times[1:] > times[:-1]).all())
+    if not rising:
+        order = np.sort(np.unique(times, return_index=True)[1])
+    if order.size < 3:
         return None
-    order = by_stamp if _unevenness(np.diff(times[by_stamp])) <= _DISORDERED else np.sort(by_stamp)
+    if not rising:
+        by_stamp = order[np.argsort(times[order])]
+        if _unevenness(np.diff(times[by_stamp])) <= _DISORDERED:
+            order = by_stamp
     t = times[order]
     steps = t[1:] - t[:-1]
     typical = period or float(np.median(steps))

@@ -1,19 +1,18 @@
 """How probable each component is, given two indexes with their joint uncertainty."""
 
+import functools
 import math
 from typing import NamedTuple
 
 import numpy as np
 from scipy.special import ndtri
 
+from ..arrays import FloatArray
 from ..identification.result import Identification
 from ..reducer import LinePair
 from .verdict import Component
 
-_PLASTIC = 1.324717957244746
-_POINTS = np.arange(4096) + 0.5
-_STANDARD_NORMAL = ndtri(np.mod(_POINTS / _PLASTIC, 1.0)), ndtri(np.mod(_POINTS / _PLASTIC**2, 1.0))
-"""Two independent standard normal coordinates of an additive-recurrence (R2) point set."""
+_DRAWS = 4096
 _INDEPENDENT = 0.999  # correlations nearer to 1 are cut, so that the two indexes never merge into one
 
 
@@ -46,7 +45,7 @@ def component_probabilities(evidence: Identification, limit: float, both_ratio: 
     The integral is a sum over a fixed low-discrepancy set of points, so the same evidence always gives the same
     probabilities, to about 1e-3.
     """
-    first, second = _STANDARD_NORMAL
+    first, second = _standard_normal()
     index, std = evidence.index, evidence.index_std
     r = min(max(evidence.index_correlation, -_INDEPENDENT), _INDEPENDENT)
     cs = index.circular_spline + std.circular_spline * first
@@ -58,3 +57,11 @@ def component_probabilities(evidence: Identification, limit: float, both_ratio: 
     single = named & ~both
     counts = (~named).sum(), (single & (cs > fs)).sum(), (single & (cs <= fs)).sum(), both.sum()
     return Probabilities(*(float(count) / first.size for count in counts))
+
+
+@functools.cache
+def _standard_normal() -> tuple[FloatArray, FloatArray]:
+    """Two independent standard normal coordinates of an additive-recurrence (R2) point set."""
+    plastic = 1.324717957244746
+    n = np.arange(_DRAWS) + 0.5
+    return ndtri(np.mod(n / plastic, 1.0)), ndtri(np.mod(n / plastic**2, 1.0))
