@@ -24,6 +24,10 @@ class Probabilities(NamedTuple):
     flexspline: float
     both: float
 
+    def of(self, component: Component) -> float:
+        """Return the probability of one of the four components."""
+        return float(getattr(self, component.value))
+
 
 def name_component(index: LinePair, limit: float, both_ratio: float) -> Component:
     """Name the component that two indexes call for, were they exact.
@@ -40,16 +44,21 @@ def name_component(index: LinePair, limit: float, both_ratio: float) -> Componen
 
 
 def component_probabilities(evidence: Identification, limit: float, both_ratio: float) -> Probabilities:
-    """Share of the indexes' joint distribution (Gaussian, cut at 0) that calls for each component at these limits.
+    """Probability of each component, given the evidence and the limits in force; see :func:`_share`."""
+    return _share(evidence.index, evidence.index_std, evidence.index_correlation, limit, both_ratio)
+
+
+@functools.lru_cache(maxsize=16)  # the evidence often stays the same from one period to the next
+def _share(index: LinePair, index_std: LinePair, correlation: float, limit: float, both_ratio: float) -> Probabilities:
+    """Share of the indexes' joint distribution (Gaussian, cut at 0) that calls for each component.
 
     The integral is a sum over a fixed low-discrepancy set of points, so the same evidence always gives the same
     probabilities, to about 1e-3.
     """
     first, second = _standard_normal()
-    index, std = evidence.index, evidence.index_std
-    r = min(max(evidence.index_correlation, -_INDEPENDENT), _INDEPENDENT)
-    cs = index.circular_spline + std.circular_spline * first
-    fs = index.flexspline + std.flexspline * (r * first + math.sqrt(1.0 - r * r) * second)
+    r = min(max(correlation, -_INDEPENDENT), _INDEPENDENT)
+    cs = index.circular_spline + index_std.circular_spline * first
+    fs = index.flexspline + index_std.flexspline * (r * first + math.sqrt(1.0 - r * r) * second)
     cs, fs = np.maximum(cs, 0.0), np.maximum(fs, 0.0)
     larger, smaller = np.maximum(cs, fs), np.minimum(cs, fs)
     named = larger >= limit

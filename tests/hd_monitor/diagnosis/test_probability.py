@@ -47,7 +47,7 @@ def test_probabilities_add_up(cs: float, fs: float, std: float, r: float) -> Non
 @given(cs=st.floats(0.0, 0.2), fs=st.floats(0.0, 0.2), r=st.floats(-0.99, 0.99))
 def test_exact_indexes_leave_no_doubt(cs: float, fs: float, r: float) -> None:
     odds = component_probabilities(evidence(cs, fs, 0.0, r), 0.05, 0.87)
-    assert getattr(odds, name_component(LinePair(cs, fs), 0.05, 0.87)) == 1.0
+    assert odds.of(name_component(LinePair(cs, fs), 0.05, 0.87)) == 1.0
 
 
 @pytest.mark.parametrize("r", [-0.9, 0.0, 0.9])
