@@ -68,7 +68,15 @@ def compare_motion(samples: JointSamples, *, minimum_speed: float, reduction: fl
 
 def _scaled(ratio: float, reduction: float) -> Limitation:
     """Return the contradiction of positions that are a multiple of what the velocities say."""
-    factors = {
+    for mistake, factor in _mistakes(reduction).items():
+        if 1.0 / _CLOSE < ratio / factor < _CLOSE:
+            return blocker(LimitationCode.VELOCITY_UNIT, ratio=ratio, mistake=mistake)
+    return blocker(LimitationCode.VELOCITY_SCALE, ratio=ratio)
+
+
+def _mistakes(reduction: float) -> dict[str, float]:
+    """Changes of position over those implied by the velocities, by the mistake that causes them."""
+    return {
         "velocities of the opposite sign": -1.0,
         "velocities in deg/s": math.radians(1.0),
         "velocities in rpm": math.tau / 60.0,
@@ -76,7 +84,3 @@ def _scaled(ratio: float, reduction: float) -> Limitation:
         "positions in degrees": math.degrees(1.0),
         "positions of the motor": reduction,
     }
-    for mistake, factor in factors.items():
-        if 1.0 / _CLOSE < ratio / factor < _CLOSE:
-            return blocker(LimitationCode.VELOCITY_UNIT, ratio=ratio, mistake=mistake)
-    return blocker(LimitationCode.VELOCITY_SCALE, ratio=ratio)

@@ -107,7 +107,9 @@ class TorqueTrack(Track):
             return np.full(times.size, np.nan)
         torque = np.interp(times, known, self._rows[:, 0], left=np.nan, right=np.nan)
         steps = np.diff(known)
-        torque[np.repeat(steps, _in_each(known, times)) > _largest_gap(steps)] = np.nan
+        longest = _largest_gap(float(np.median(steps)))
+        if steps.max() > longest:
+            torque[np.repeat(steps, _in_each(known, times)) > longest] = np.nan
         return torque
 
 
@@ -156,17 +158,30 @@ class MotionTrack(Track):
             torque = np.interp(times, known[measured], effort[measured])
         else:
             torque = np.full(times.size, np.nan)
-        unknown = (times < known[0]) | (times > known[-1]) | (length > _largest_gap(steps))
-        for values in (angle, speed, torque):
-            values[unknown] = np.nan
+        outside: list[slice | BoolArray] = []
+        if times[0] < known[0]:
+            outside.append(slice(0, int(times.searchsorted(known[0]))))
+        if times[-1] > known[-1]:
+            outside.append(slice(int(times.searchsorted(known[-1], side="right")), None))
+        longest = float(steps.max())
+        if longest > _largest_gap(float(steps.min())):  # the median is not below the least: only now it is wanted
+            outside.append(length > _largest_gap(float(np.median(steps))))
+        for place in outside:
+            for values in (angle, speed, torque):
+                values[place] = np.nan
         return Motion(angle, speed, torque)
 
 
 def _in_each(known: FloatArray, times: FloatArray) -> npt.NDArray[np.intp]:
     """Count the rising `times` in each interval between rising `known` ones; those outside go to the outermost."""
-    return np.diff(times.searchsorted(known[1:-1]), prepend=0, append=times.size)
+    counts = np.empty(known.size - 1, dtype=np.intp)
+    edges = times.searchsorted(known[1:-1])
+    counts[:-1] = edges
+    counts[-1] = times.size
+    counts[1:] -= edges
+    return counts
 
 
-def _largest_gap(steps: FloatArray) -> float:
-    """Time [s] between two messages that interpolation bridges, given the distances of all [s], shape (N,)."""
-    return min(_LARGEST_HOLE, _HOLE_PERIODS * float(np.median(steps)) + 0.02)
+def _largest_gap(step: float) -> float:
+    """Time [s] between two messages that interpolation bridges where their typical distance is `step`."""
+    return min(_LARGEST_HOLE, _HOLE_PERIODS * step + 0.02)

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray, runs_of
+from ..arrays import BoolArray, FloatArray, IntArray, runs_of
 from ..settings import JointSettings
 from ..sources import Quantity
 from .clock import recover_clock
@@ -106,24 +106,28 @@ class Recorder:
     def assemble(self, period: Period) -> AssembledPeriod:
         """Join the samples of one period."""
         joint_samples = self._motion(period)
-        turning = len(joint_samples) > 0 and float(np.ptp(joint_samples.angle)) > _STANDING
+        angle = joint_samples.angle
+        turning = angle.size > 0 and float(angle.max() - angle.min()) > _STANDING
         torques = self._measured_torque(period)
         records, values = self._vibration(period.samples[Quantity.VIBRATION], period.epoch, turning)
         for track in (self._track, self._torque_track):
             track.forget((period.end - period.epoch) * _NS)
-        usable = {
-            Quantity.VIBRATION: bool(np.isfinite(values).any()),
+        some = {
+            Quantity.VIBRATION: np.isfinite(values).any(),
             Quantity.MOTION: len(joint_samples) > 0,
             Quantity.TORQUE: torques > 0,
         }
-        return AssembledPeriod(records, joint_samples, values, frozenset(filter(usable.get, usable)))
+        return AssembledPeriod(
+            records, joint_samples, values, frozenset(quantity for quantity, usable in some.items() if usable)
+        )
 
     def _motion(self, period: Period) -> JointSamples:
         stamps, rows = _sorted(period.samples[Quantity.MOTION])
         times = _seconds(stamps, period.epoch)
         taken = self._extend(self._track, even_stamps(times, rows), rows, period, Quantity.MOTION)
-        self.count(motion_messages=taken, motion_faults=stamps.size - taken)
-        if taken < stamps.size:
+        dropped = stamps.size - int(np.count_nonzero(taken))
+        self.count(motion_messages=stamps.size - dropped, motion_faults=dropped)
+        if dropped:
             self.count(last_fault="joint states without a finite position or with repeated stamps were left out")
             good = np.isfinite(rows[:, 0])
             good[1:] &= stamps[1:] > stamps[:-1]
@@ -136,19 +140,18 @@ class Recorder:
             return 0
         stamps, rows = _sorted(period.samples[Quantity.TORQUE])
         times = _seconds(stamps, period.epoch)
-        taken = self._extend(self._torque_track, times, rows, period, Quantity.TORQUE)
+        taken = int(np.count_nonzero(self._extend(self._torque_track, times, rows, period, Quantity.TORQUE)))
         self.count(torque_messages=taken, torque_faults=stamps.size - taken)
         if taken < stamps.size:
             self.count(last_fault="torques that are not finite or with repeated stamps were left out")
         return taken
 
     @staticmethod
-    def _extend(track: Track, times: FloatArray, rows: FloatArray, period: Period, quantity: Quantity) -> int:
-        """Append to a track, with the first sample after the period; return how many of the period were taken."""
+    def _extend(track: Track, times: FloatArray, rows: FloatArray, period: Period, quantity: Quantity) -> BoolArray:
+        """Append to a track, with the first sample after the period; return which ones of the period were taken."""
         following = period.following[quantity]
         lent = _seconds(following.stamps, period.epoch)
-        taken = track.extend(np.concatenate([times, lent]), np.concatenate([rows, following.values]))
-        return int(np.count_nonzero(taken[: times.size]))
+        return track.extend(np.concatenate([times, lent]), np.concatenate([rows, following.values]))[: times.size]
 
     def _vibration(self, samples: Samples, epoch: int, turning: bool) -> tuple[tuple[Record, ...], FloatArray]:
         if not samples.stamps.size:
@@ -163,7 +166,8 @@ class Recorder:
         screened = screen(samples.values[clock.order, 0], full_scale=self._full_scale, turning=turning)
         self._count_screened(screened)
         self.count(samples=clock.order.size, duplicates=clock.duplicates, rate=1.0 / clock.period)
-        number, missing = clock.number, 0
+        number, start = clock.number, clock.start
+        missing = 0
         if grid is not None:
             missing = round((clock.start - grid.due) / clock.period)
             if missing:
@@ -171,17 +175,26 @@ class Recorder:
             if missing * clock.period > self._max_gap or missing < 0:
                 self._joined, missing = False, 0
         self._grid = _Grid(clock.start + clock.period * (int(number[-1]) + 1), clock.period)
-        absent = np.diff(number) - 1
-        self.count(gaps=int(np.count_nonzero(absent)), lost=int(absent.sum()))
-        cuts = np.flatnonzero(absent * clock.period > self._max_gap) + 1
+        bounds = [0, number.size]
+        if int(number[-1]) >= number.size:
+            steps = np.diff(number)
+            holes = np.flatnonzero(steps > 1)
+            for hole in holes.tolist():
+                self.count(gaps=1, lost=int(steps[hole]) - 1)
+            cuts = holes[(steps[holes] - 1) * clock.period > self._max_gap] + 1
+            bounds[1:1] = cuts.tolist()
         records: list[Record] = []
-        for first, last in itertools.pairwise([0, *cuts.tolist(), number.size]):
-            if first:
-                self._joined, missing = False, 0
-            offset = int(number[first]) - missing
-            values = np.full(int(number[last - 1]) - offset + 1, np.nan)
-            values[number[first:last] - offset] = screened.values[first:last]
-            records.extend(self._records(clock.start + clock.period * offset, clock.period, values))
+        for piece, (first, last) in enumerate(itertools.pairwise(bounds)):
+            if piece:
+                self._joined = False
+            lead = missing if piece == 0 else 0
+            offset = int(number[first]) - lead
+            size = int(number[last - 1]) - offset + 1
+            values = screened.values[first:last]
+            if size > last - first:  # some are missing in between
+                values = np.full(size, np.nan)
+                values[number[first:last] - offset] = screened.values[first:last]
+            records.extend(self._records(start + clock.period * offset, clock.period, values))
         return tuple(records), screened.values
 
     def _records(self, start: float, period: float, values: FloatArray) -> list[Record]:
@@ -192,10 +205,11 @@ class Recorder:
         if self._has_sensor:  # in a hole of its signal there is no torque that could be mixed with a measured one
             torque = self._torque_track.at(times)
             known &= np.isfinite(torque)
+        spans = [(0, values.size)] if known.all() else runs_of(known)
         torque = self._torque(torque)
         records, joined = [], self._joined
         self._joined = False
-        for first, last in runs_of(known):
+        for first, last in spans:
             continues = joined and first == 0
             if last - first >= _SHORTEST_RECORD or continues:
                 part = slice(first, last)

@@ -33,20 +33,37 @@ class Samples(NamedTuple):
     values: FloatArray
 
 
+class _Chunk(NamedTuple):
+    """Samples that were added together; `ordered` is true if their stamps are known never to fall."""
+
+    stamps: IntArray
+    values: FloatArray
+    ordered: bool
+
+    def split(self, until: int) -> tuple["_Chunk | None", "_Chunk | None"]:
+        """Return the samples stamped before `until` [ns], and the others."""
+        stamps, values, ordered = self
+        if ordered:
+            count = int(stamps.searchsorted(until))
+            early: slice | BoolArray = slice(count)
+            late: slice | BoolArray = slice(count, None)
+        else:
+            early = stamps < until
+            late, count = ~early, int(np.count_nonzero(early))
+        if count == stamps.size:
+            return self, None
+        if not count:
+            return None, self
+        return _Chunk(stamps[early], values[early], ordered), _Chunk(stamps[late], values[late], ordered)
+
+
 @dataclass(slots=True)
 class _Epoch:
     """What came between two jumps of the clock."""
 
-    chunks: list[Samples] = field(default_factory=list)
+    chunks: list[_Chunk] = field(default_factory=list)
     newest: int | None = None
     oldest: int | None = None
-
-    def append(self, chunk: Samples) -> None:
-        """Add samples, one or more."""
-        self.chunks.append(chunk)
-        low, high = int(chunk.stamps.min()), int(chunk.stamps.max())
-        self.newest = high if self.newest is None else max(high, self.newest)
-        self.oldest = low if self.oldest is None else min(low, self.oldest)
 
 
 class StampedBuffer:
@@ -79,7 +96,7 @@ class StampedBuffer:
         first, newest = int(stamps[0]), self._epochs[-1].newest
         near = newest is None or newest <= first <= newest + LEAP
         if near and not self._suspects and (not steps.size or (steps.min() >= 0 and steps.max() <= LEAP)):
-            self._epochs[-1].append(Samples(stamps, values))  # the common case
+            self._append(self._epochs[-1], _Chunk(stamps, values, ordered=True))  # the common case
             return
         bounds = [0, *(np.flatnonzero(np.abs(steps) > CLOCK_JUMP) + 1).tolist(), stamps.size]
         for start, stop in pairwise(bounds):
@@ -117,7 +134,15 @@ class StampedBuffer:
         self.late += int(stamps.size - keep.sum())
         self.disordered += int((behind[keep] > 0).sum())
         if keep.any():
-            epoch.append(Samples(stamps[keep], values[keep]))
+            self._append(epoch, _Chunk(stamps[keep], values[keep], ordered=False))
+
+    @staticmethod
+    def _append(epoch: _Epoch, chunk: _Chunk) -> None:
+        stamps = chunk.stamps
+        epoch.chunks.append(chunk)
+        low, high = (int(stamps[0]), int(stamps[-1])) if chunk.ordered else (int(stamps.min()), int(stamps.max()))
+        epoch.newest = high if epoch.newest is None else max(high, epoch.newest)
+        epoch.oldest = low if epoch.oldest is None else min(low, epoch.oldest)
 
     @property
     def complete_until(self) -> int | None:
@@ -156,27 +181,31 @@ class StampedBuffer:
     def take(self, until: int) -> Samples:
         """Remove and return the samples stamped before `until` [ns], in the order of arrival."""
         epoch = self._epochs[0]
-        stamps, values = self._gather(epoch)
-        early = stamps < until
-        count = int(np.count_nonzero(early))
-        late: BoolArray | slice = ~early
-        if early[:count].all():  # all before the others, as mostly: no copy then
-            late = slice(count, None)
-        epoch.chunks, epoch.oldest = [], None
-        if count < stamps.size:
-            epoch.append(Samples(stamps[late], values[late]))
-        return Samples(stamps[early], values[early])
+        taken: list[_Chunk] = []
+        left: list[_Chunk] = []
+        for chunk in epoch.chunks:
+            early, late = chunk.split(until)
+            if early is not None:
+                taken.append(early)
+            if late is not None:
+                left.append(late)
+        epoch.chunks = left
+        epoch.oldest = min((_oldest(chunk) for chunk in left), default=None)
+        if not taken:
+            return Samples(np.empty(0, dtype=np.int64), np.empty((0, self._columns)))
+        if len(taken) == 1:
+            return Samples(taken[0].stamps, taken[0].values)
+        return Samples(np.concatenate([c.stamps for c in taken]), np.concatenate([c.values for c in taken]))
 
     def peek_first(self) -> Samples:
         """Return the earliest sample still here without removing it, or none."""
-        stamps, values = self._gather(self._epochs[0])
-        first = np.flatnonzero(stamps == self.oldest)[:1]
-        return Samples(stamps[first], values[first])
+        chunks = self._epochs[0].chunks
+        if not chunks:
+            return Samples(np.empty(0, dtype=np.int64), np.empty((0, self._columns)))
+        first = min(chunks, key=_oldest)
+        place = 0 if first.ordered else int(np.argmin(first.stamps))
+        return Samples(first.stamps[place : place + 1], first.values[place : place + 1])
 
-    def _gather(self, epoch: _Epoch) -> Samples:
-        """Return all samples of an epoch as one chunk."""
-        if len(epoch.chunks) != 1:
-            none = Samples(np.empty(0, dtype=np.int64), np.empty((0, self._columns)))
-            stamps, values = zip(none, *epoch.chunks, strict=True)
-            epoch.chunks = [Samples(np.concatenate(stamps), np.concatenate(values))]
-        return epoch.chunks[0]
+
+def _oldest(chunk: _Chunk) -> int:
+    return int(chunk.stamps[0] if chunk.ordered else chunk.stamps.min())
