@@ -96,7 +96,12 @@ def write_bag(
     names = [rig.joint.name for rig in rigs]
     if len(set(names)) != len(names):
         raise BagError(f"joint_states.name is {' and '.join(names)}: several rigs need joints of different names")
-    rigs = [_with_an_end(rig) for rig in rigs]
+    rigs = [
+        rig
+        if math.isfinite(rig.duration)
+        else RigSettings.from_mapping({**rig.values, "duration": rig.programme.cycle_duration})
+        for rig in rigs
+    ]
     prefix = "/" + namespace.strip("/") + "/" if namespace.strip("/") else "/"
     streams = []
     for rig, name in zip(rigs, names, strict=True):
@@ -122,12 +127,6 @@ def write_bag(
     except (WriterError, OSError) as error:
         raise BagError(f"{path} cannot be written: {error}") from error
     return BagSummary(Path(path), end, counts)
-
-
-def _with_an_end(rig: RigSettings) -> RigSettings:
-    if math.isfinite(rig.duration):
-        return rig
-    return RigSettings.from_mapping({**rig.values, "duration": rig.programme.cycle_duration})
 
 
 def _serialised(simulation: Simulation, epoch: int, names: Mapping[str, str]) -> Iterator[tuple[int, str, str, bytes]]:

@@ -31,10 +31,8 @@ def stiffness_of(
     Raises
     ------
     ParameterError
-        If the defect is unknown or the stiffness could vanish.
+        If the stiffness could vanish.
     """
-    if defect != CUSTOM and defect not in DEFECTS:
-        raise ParameterError(f"defect = {defect!r} is unknown; choose one of: {', '.join([*DEFECTS, CUSTOM])}")
     series = (flexspline, circular_spline) if defect == CUSTOM else DEFECTS[defect]
     total = math.fsum(abs(b) for s in series for b in s.beta)
     if total >= 1.0:

@@ -56,14 +56,7 @@ class JointBatch(NamedTuple):
 
 
 class Joint:
-    """Turns the rig's motion into joint states.
-
-    Parameters
-    ----------
-    rig : Rig
-    settings : JointSettings
-    seed : int
-    """
+    """Turns the rig's motion into joint states."""
 
     def __init__(self, rig: Rig, settings: JointSettings, *, seed: int = 0) -> None:
         self.settings = settings

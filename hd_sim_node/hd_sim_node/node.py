@@ -36,10 +36,7 @@ FLUSH_TIME = 5.0
 class HdSimNode(ManagedNode):
     """Publishes a simulated rig: set up by configure, running while active, paused by deactivate.
 
-    Parameters
-    ----------
-    **options
-        Passed on to the base class: ``context``, ``namespace``, ``parameter_overrides`` …
+    The options are the base class's: ``context``, ``namespace``, ``parameter_overrides`` …
 
     Raises
     ------
@@ -86,22 +83,19 @@ class HdSimNode(ManagedNode):
         settings = self._settings()
         if self._simulation is not None and settings != self._simulation.settings:
             self._simulation.change(settings)
-            self._remark()
+            self._remark(self._simulation)
         if self._stream is not None:
             self._stream.set_scale(self.get_parameter("time_scale").value, self._steady_time())
 
-    def _remark(self) -> None:
+    def _remark(self, simulation: Simulation) -> None:
         """Log what is being simulated, and what the user may not have intended."""
-        if self._simulation is None:
-            return
-        settings = self._simulation.settings
-        model = settings.model
+        settings, model = simulation.settings, simulation.settings.model
         self.get_logger().info(
             f"rig {settings.reducer.flexspline_teeth}/{settings.reducer.circular_spline_teeth}, programme "
             f"{settings.general.programme}, defect {settings.general.defect}: index of the flexspline "
             f"{100 * model.flexspline.index:.2f} %, of the circular spline {100 * model.circular_spline.index:.2f} %"
         )
-        for remark in (*settings.remarks, self._simulation.warning):
+        for remark in (*settings.remarks, simulation.warning):
             if remark:
                 self.get_logger().warning(remark)
 
@@ -113,7 +107,7 @@ class HdSimNode(ManagedNode):
             self._simulation = Simulation(settings)
         except HdMonitorError as error:
             return self.refuse(error)
-        self._remark()
+        self._remark(self._simulation)
         scale = self.get_parameter("time_scale").value
         self._stream = Stream(self._simulation, scale)
         seconds = self.get_parameter("queue_seconds").value
@@ -171,8 +165,7 @@ class HdSimNode(ManagedNode):
             )
         if stream.ended and self._timer is not None:
             self.get_logger().info(f"the programme has ended after {stream.position:.6g} s; nothing more is published")
-            self.destroy_timer(self._timer)
-            self._timer = None
+            self.stop_work()
             if self.get_parameter("exit_at_end").value:
                 for outlet in self._outlets.values():
                     outlet.wait_for_all_acked(Duration(seconds=FLUSH_TIME))

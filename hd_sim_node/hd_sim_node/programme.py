@@ -105,11 +105,6 @@ class SpeedProgramme:
         """Duration of the whole programme [s]; infinite if it has no end."""
         return self.cycles * self.cycle_duration if self.cycles else math.inf
 
-    @property
-    def peak_speed(self) -> float:
-        """Largest wave-generator speed [rpm] without sign, ripple included."""
-        return float(np.abs(self.speeds).max()) * (1.0 + self.ripple.amplitude)
-
     def angle(self, times: npt.ArrayLike) -> FloatArray:
         """Wave-generator angle φ [rad] at `times` [s], any shape; 0 at the start, exact to rounding."""
         angle, _, _ = self._plain(times)

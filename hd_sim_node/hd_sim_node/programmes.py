@@ -4,10 +4,9 @@ A new programme is one function and one entry of :data:`PROGRAMMES`.
 """
 
 import math
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 from hd_monitor.errors import ParameterError
 from hd_monitor.parameter import Parameter, number, table
@@ -27,23 +26,14 @@ def _rate(default: float, description: str) -> float:
     return number(default, "rpm/s", 1e-3, 1e6, f"wave generator: {description}")
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ProgrammeKind:
-    """A kind of programme.
-
-    Parameters
-    ----------
-    summary : str
-        What the wave generator does, in words.
-    parameters : tuple of Parameter
-    corners : callable
-        From the parameters' values (by the part of the name after the dot), the reducer, and whether the cycle must
-        end at its first speed, to times [s] and speeds [rpm].
-    """
+class ProgrammeKind(NamedTuple):
+    """A kind of programme."""
 
     summary: str
+    """What the wave generator does, in words."""
     parameters: tuple[Parameter, ...]
-    corners: Callable[[Mapping[str, Any], Reducer, bool], Corners]
+    corners: Callable[..., Corners]
+    """From the reducer, whether the cycle must end at its first speed, and the parameters' values as keywords."""
 
 
 def build_programme(
@@ -65,13 +55,11 @@ def build_programme(
     Raises
     ------
     ParameterError
-        If the name is unknown or the values do not make a programme.
+        If the values do not make a programme.
     """
-    if name not in PROGRAMMES:
-        raise ParameterError(f"programme = {name!r} is unknown; choose one of: {', '.join(PROGRAMMES)}")
     kind = PROGRAMMES[name]
     own = {p.name.partition(".")[2]: values.get(p.name, p.default) for p in kind.parameters}
-    times, speeds = kind.corners(own, reducer, cycles != 1)
+    times, speeds = kind.corners(reducer, cycles != 1, **own)
     return SpeedProgramme(times=times, speeds=speeds, cycles=cycles, ripple=ripple)
 
 
@@ -85,25 +73,25 @@ def _chain(start: float, *pieces: tuple[float, float]) -> Corners:
     return times, speeds
 
 
-def _dwell(values: Mapping[str, Any], reducer: Reducer, closed: bool) -> Corners:
-    first, last, step, rate = values["first"], values["last"], values["step"], values["ramp_rate"]
+def _dwell(
+    _: Reducer, closed: bool, *, first: float, last: float, step: float, time: float, ramp_rate: float
+) -> Corners:
     count = math.floor(abs(last - first) / step + 1e-9) + 1
     speeds = [first + math.copysign(step * i, last - first) for i in range(count)]
-    pieces = [(values["time"], first)]
+    pieces = [(time, first)]
     for before, speed in pairwise(speeds):
-        pieces += [(abs(speed - before) / rate, speed), (values["time"], speed)]
+        pieces += [(abs(speed - before) / ramp_rate, speed), (time, speed)]
     if closed:
-        pieces.append((abs(speeds[-1] - first) / rate, first))
+        pieces.append((abs(speeds[-1] - first) / ramp_rate, first))
     return _chain(first, *pieces)
 
 
-def _fixed(values: Mapping[str, Any], reducer: Reducer, closed: bool) -> Corners:
-    return _chain(values["speed"], (values["time"], values["speed"]))
+def _fixed(_: Reducer, closed: bool, *, speed: float, time: float) -> Corners:
+    return _chain(speed, (time, speed))
 
 
-def _sweep(values: Mapping[str, Any], reducer: Reducer, closed: bool) -> Corners:
-    first, last = values["first"], values["last"]
-    duration = abs(last - first) / values["rate"]
+def _sweep(_: Reducer, closed: bool, *, first: float, last: float, rate: float) -> Corners:
+    duration = abs(last - first) / rate
     if duration == 0.0:
         raise ParameterError(
             f"a sweep from {first:g} to {last:g} rpm does not change the speed; give two speeds, or programme fixed"
@@ -111,23 +99,21 @@ def _sweep(values: Mapping[str, Any], reducer: Reducer, closed: bool) -> Corners
     return _chain(first, (duration, last), *([(duration, first)] if closed else []))
 
 
-def _strokes(values: Mapping[str, Any], reducer: Reducer, closed: bool) -> Corners:
-    revolutions = values["angle"] / 360.0 * reducer.reduction
-    rate = values["acceleration"]
+def _strokes(
+    reducer: Reducer, closed: bool, *, angle: float, speed: float, acceleration: float, pause: float
+) -> Corners:
+    revolutions = angle / 360.0 * reducer.reduction
     # A short stroke brakes before it has reached its speed: v² / (60 a) revolutions go into the two ramps.
-    reachable = math.sqrt(60.0 * rate * revolutions)
-    speed = min(values["speed"], reachable)
-    ramp = speed / rate
+    reachable = math.sqrt(60.0 * acceleration * revolutions)
+    speed = min(speed, reachable)
+    ramp = speed / acceleration
     hold = 60.0 * revolutions / speed - ramp if speed < reachable else 0.0
-    pieces: list[tuple[float, float]] = []
-    for direction in (1.0, -1.0):
-        peak = direction * speed
-        pieces += [(ramp, peak), (hold, peak), (ramp, 0.0), (values["pause"], 0.0)]
-    return _chain(0.0, *pieces)
+    there, back = ([(ramp, peak), (hold, peak), (ramp, 0.0), (pause, 0.0)] for peak in (speed, -speed))
+    return _chain(0.0, *there, *back)
 
 
-def _profile(values: Mapping[str, Any], reducer: Reducer, closed: bool) -> Corners:
-    return list(values["times"]), list(values["speeds"])
+def _profile(_: Reducer, closed: bool, *, times: Sequence[float], speeds: Sequence[float]) -> Corners:
+    return list(times), list(speeds)
 
 
 PROGRAMMES: dict[str, ProgrammeKind] = {

@@ -22,8 +22,6 @@ from .rig import Surroundings
 from .sensor import SensorSettings
 from .transport import TransportSettings
 
-_DEGREE = math.pi / 180.0
-
 
 @dataclass(frozen=True, slots=True)
 class RigSettings:
@@ -32,8 +30,8 @@ class RigSettings:
     Examples
     --------
     >>> settings = RigSettings.from_mapping({"programme": "fixed", "fixed.speed": 400.0, "defect": "both"})
-    >>> settings.programme.peak_speed, round(settings.model.flexspline.index, 3)
-    (400.0, 0.103)
+    >>> settings.programme.speeds.tolist(), round(settings.model.flexspline.index, 3)
+    ([400.0, 400.0], 0.103)
     """
 
     values: Mapping[str, Any]
@@ -107,14 +105,14 @@ class RigSettings:
         """What acts besides the model's own torques."""
         return Surroundings(
             gravity=self.values["torque.gravity"],
-            gravity_angle=self.values["torque.gravity_angle"] * _DEGREE,
+            gravity_angle=math.radians(self.values["torque.gravity_angle"]),
             rigid_body=self.general.rigid_body,
         )
 
     @property
     def start_angle(self) -> float:
         """Output angle at the start [rad]."""
-        return self.general.start_angle * _DEGREE
+        return math.radians(self.general.start_angle)
 
     @property
     def duration(self) -> float:

@@ -56,10 +56,6 @@ class Stretch:
 class Simulation:
     """A simulated rig.
 
-    Parameters
-    ----------
-    settings : RigSettings
-
     Raises
     ------
     ParameterError
@@ -148,12 +144,14 @@ class Simulation:
             return None
         blocks = int(min(self._stretch, self._left))
         self._left -= blocks
-        motion = self._rig.advance(blocks * self._block_size)
+        size = self._block_size
+        first, self._sequence = self._sequence, self._sequence + blocks
+        motion = self._rig.advance(blocks * size)
         samples, stamps = self._accelerometer.measure(motion), self._accelerometer.stamps(motion)
         joint = self._joint.report(motion)
         instants = nanoseconds(motion.times)
         due = {
-            contract.TORSIONAL_ACCELERATION_BLOCK: instants[self._block_size - 1 :: self._block_size],
+            contract.TORSIONAL_ACCELERATION_BLOCK: instants[size - 1 :: size],
             contract.TORSIONAL_ACCELERATION: instants,
             contract.IMU: instants,
             contract.JOINT_STATES: nanoseconds(joint.times),
@@ -162,15 +160,12 @@ class Simulation:
             motion=motion,
             samples=samples,
             stamps=stamps,
-            blocks=self._blocks(samples, stamps),
+            blocks=tuple(
+                Block(stamp, 1.0 / self._rig.rate, first + number, row)
+                for number, (stamp, row) in enumerate(
+                    zip(stamps[::size].tolist(), samples.reshape(-1, size), strict=True)
+                )
+            ),
             joint=joint,
             dispatch={topic: transport.dispatch(due[topic]) for topic, transport in self._transports.items()},
-        )
-
-    def _blocks(self, samples: FloatArray, stamps: IntArray) -> tuple[Block, ...]:
-        size = self._block_size
-        first, self._sequence = self._sequence, self._sequence + samples.size // size
-        return tuple(
-            Block(stamp, 1.0 / self._rig.rate, first + number, row)
-            for number, (stamp, row) in enumerate(zip(stamps[::size].tolist(), samples.reshape(-1, size), strict=True))
         )

@@ -7,6 +7,7 @@ from hd_monitor.model import Dynamics, ParametricModel, StiffnessSeries
 from hd_monitor.settings import JointSettings
 from hd_sim_node.defects import DEFECTS, stiffness_of
 from hd_sim_node.programmes import build_programme
+from hd_sim_node.settings import RigSettings
 from hd_sim_node.stability import describe, unstable_speeds
 
 LIMITS = JointSettings.from_mapping().diagnosis
@@ -44,7 +45,7 @@ def test_custom_takes_the_series_given():
 
 def test_an_unknown_defect_is_refused_with_the_choice():
     with pytest.raises(ParameterError, match="none, flexspline, circular_spline, both, custom"):
-        stiffness_of("rust", NOTHING, NOTHING)
+        RigSettings.from_mapping({"defect": "rust"})
 
 
 def test_a_stiffness_that_could_vanish_is_refused():

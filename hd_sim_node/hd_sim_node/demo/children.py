@@ -19,13 +19,7 @@ class DemoError(HdMonitorError):
 
 
 class Children:
-    """Processes that live as long as the ``with`` block around them.
-
-    Parameters
-    ----------
-    environment : mapping of str to str
-        Environment variables of the processes.
-    """
+    """Processes, with these environment variables, that live as long as the ``with`` block around them."""
 
     def __init__(self, environment: Mapping[str, str]) -> None:
         self._environment = environment

@@ -5,7 +5,6 @@ import os
 import signal
 import sys
 import time
-from typing import Any
 
 from hd_monitor import contract
 from hd_monitor.diagnosis.verdict import FaultCode
@@ -65,7 +64,7 @@ def run(arguments: argparse.Namespace) -> int:
     plan = Plan(arguments)
     # The middleware reads its range of discovery when it starts.
     os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
-    before = signal.signal(signal.SIGTERM, _interrupt)
+    before = signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         with Children(os.environ | {"ROS_DOMAIN_ID": str(plan.domain)}) as children:
             rig, monitor = children.start(*SIMULATOR, *plan.simulator), children.start(*MONITOR, *plan.monitor)
@@ -86,10 +85,6 @@ def run(arguments: argparse.Namespace) -> int:
         return FAILED
     finally:
         signal.signal(signal.SIGTERM, before)
-
-
-def _interrupt(number: int, frame: Any) -> None:
-    raise KeyboardInterrupt
 
 
 def _follow(plan: Plan, children: Children, screen: Screen, listen: Listen) -> View:
@@ -141,8 +136,10 @@ def _conclude(plan: Plan, screen: Screen, view: View) -> bool:
         },
     )
     screen.line()
-    if component != plan.expected:
-        screen.line(f"The monitor says {component}, but {plan.expected} was simulated.")
-        return False
-    screen.line(f"The monitor names what was simulated: {plan.expected}.")
-    return True
+    right = component == plan.expected
+    screen.line(
+        f"The monitor names what was simulated: {plan.expected}."
+        if right
+        else f"The monitor says {component}, but {plan.expected} was simulated."
+    )
+    return right

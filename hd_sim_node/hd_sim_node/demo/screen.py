@@ -17,14 +17,7 @@ _SPLINES = ("flexspline", "circular spline")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class View:
-    """A status as it came from the topic.
-
-    Attributes
-    ----------
-    name, message : str
-    level : Level
-    values : mapping of str to str
-    """
+    """A status as it came from the topic."""
 
     name: str
     level: Level
@@ -47,14 +40,7 @@ class View:
 
 
 class Screen:
-    """Where progress and the evolving verdict are shown.
-
-    Parameters
-    ----------
-    out : text stream
-    plain : bool
-        Lines even on a terminal.
-    """
+    """Where progress and the evolving verdict are shown; `plain` asks for lines even on a terminal."""
 
     def __init__(self, out: TextIO, *, plain: bool = False) -> None:
         self._out = out
