@@ -66,8 +66,7 @@ class HdSimNode(ManagedNode):
             declare(self, parameter, values[parameter.name], read_only=fixed)
 
     def _settings(self, changes: Sequence[RosParameter] = ()) -> RigSettings:
-        names = [parameter.name for parameter in PARAMETERS]
-        values = {p.name: p.value for p in self.get_parameters(names)}
+        values = {p.name: self.get_parameter(p.name).value for p in PARAMETERS}
         values |= {p.name: p.value for p in changes if p.name in values}
         return RigSettings.from_mapping(values)
 

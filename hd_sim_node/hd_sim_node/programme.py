@@ -56,8 +56,6 @@ class SpeedProgramme:
     15.0
     """
 
-    __slots__ = ("_angles", "_slopes", "cycles", "ripple", "speeds", "times")
-
     def __init__(
         self, *, times: npt.ArrayLike, speeds: npt.ArrayLike, cycles: int = 0, ripple: Ripple = NO_RIPPLE
     ) -> None:

@@ -132,9 +132,7 @@ PROGRAMMES: dict[str, ProgrammeKind] = {
     "fixed": ProgrammeKind(
         summary="holds one speed",
         parameters=table(
-            "fixed.",
-            speed=_speed(850.0, "speed"),
-            time=number(60.0, "s", 0.01, 1e7, "length of one cycle"),
+            "fixed.", speed=_speed(850.0, "speed"), time=number(60.0, "s", 0.01, 1e7, "length of one cycle")
         ),
         corners=_fixed,
     ),

@@ -8,13 +8,7 @@ from .simulation import Simulation, Stretch
 
 
 class Stream:
-    """Hands out a simulation's messages when they are due.
-
-    Parameters
-    ----------
-    simulation : Simulation
-    scale : float
-        Simulated seconds in one second of the clock.
+    """Hands out a simulation's messages when they are due, `scale` simulated seconds in one second of the clock.
 
     Attributes
     ----------

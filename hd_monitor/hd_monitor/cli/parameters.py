@@ -4,6 +4,7 @@ import argparse
 import math
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import groupby
 
 from ..errors import HdMonitorError
 from ..parameter import Parameter
@@ -76,21 +77,12 @@ def markdown(tables: Mapping[str, Sequence[Parameter]]) -> str:
 
 
 def _groups(parameters: Sequence[Parameter]) -> Iterator[str]:
-    groups: dict[str, list[Parameter]] = {}
-    for parameter in parameters:
-        group = parameter.name.partition(".")[0] if "." in parameter.name else ""
-        groups.setdefault(group, []).append(parameter)
-    for name, members in groups.items():
-        head = f"### {name}" if name else "### Without a group"
-        rows = "\n".join(map(_row, members))
-        yield f"{head}\n\n| name | default | unit | range | description |\n|---|---|---|---|---|\n{rows}\n"
-
-
-def _row(parameter: Parameter) -> str:
-    return (
-        f"| `{parameter.name}` | `{_value(parameter)}` | {parameter.unit or '–'} | {_range(parameter)} | "
-        f"{parameter.description} |"
-    )
+    for name, members in groupby(parameters, lambda parameter: parameter.name.rpartition(".")[0]):
+        rows = "\n".join(
+            f"| `{p.name}` | `{_value(p)}` | {p.unit or '–'} | {_range(p)} | {p.description} |" for p in members
+        )
+        head = f"### {name or 'Without a group'}\n"
+        yield f"{head}\n| name | default | unit | range | description |\n|---|---|---|---|---|\n{rows}\n"
 
 
 def _value(parameter: Parameter) -> str:

@@ -12,7 +12,6 @@ from ..offline.plan import Request
 from ..offline.run import replay_bag
 from ..offline.summary import summarise
 
-DONE, FAILED = 0, 1
 _FAIL_ON = {"warn": Level.WARN, "error": Level.ERROR}
 
 
@@ -80,7 +79,7 @@ def run(arguments: argparse.Namespace) -> int:
         page = write_report(arguments.report, outcome.content, outcome.joints, outcome.collectors)
         print(f"report: {page}", file=text)
     worst = max(joint.last.verdict.level for joint in outcome.joints if joint.last is not None)
-    return FAILED if arguments.fail_on and worst >= _FAIL_ON[arguments.fail_on] else DONE
+    return int(bool(arguments.fail_on) and worst >= _FAIL_ON[arguments.fail_on])
 
 
 def write_json(content: object, target: str) -> None:

@@ -5,8 +5,8 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Mapping
-from contextlib import suppress
-from typing import IO, Self
+from contextlib import AbstractContextManager, suppress
+from typing import IO
 
 from hd_monitor.errors import HdMonitorError
 
@@ -18,16 +18,12 @@ class DemoError(HdMonitorError):
     """A process ended although it was still needed, or the monitor has stopped reporting."""
 
 
-class Children:
+class Children(AbstractContextManager["Children"]):
     """Processes, with these environment variables, that live as long as the ``with`` block around them."""
 
     def __init__(self, environment: Mapping[str, str]) -> None:
         self._environment = environment
         self._children: dict[str, tuple[subprocess.Popen[bytes], IO[bytes]]] = {}
-
-    def __enter__(self) -> Self:
-        """Start with none."""
-        return self
 
     def __exit__(self, *error: object) -> None:
         """Interrupt all, wait, and force those that do not end."""

@@ -15,8 +15,6 @@ from .listener import Listen, listening
 from .plan import Plan
 from .screen import Screen, View
 
-SIMULATOR = ("hd_sim_node", "hd_sim_node")
-MONITOR = ("hd_monitor_node", "hd_monitor.ros")
 PATIENCE = 60.0
 """Seconds without progress on /diagnostics after which the demo gives up."""
 FAILED = 1
@@ -48,11 +46,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     for node, name in (("sim", "hd_sim_node"), ("monitor", "hd_monitor_node")):
         parser.add_argument(
-            f"--{node}",
-            action="append",
-            default=[],
-            metavar="NAME:=VALUE",
-            help=f"a parameter of {name}, repeatable",
+            f"--{node}", action="append", default=[], metavar="NAME:=VALUE", help=f"a parameter of {name}, repeatable"
         )
     parser.add_argument("--stay", action="store_true", help="keep both nodes running afterwards, until Ctrl+C")
     parser.add_argument("--plain", action="store_true", help="print lines even on a terminal")
@@ -67,7 +61,8 @@ def run(arguments: argparse.Namespace) -> int:
     before = signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         with Children(os.environ | {"ROS_DOMAIN_ID": str(plan.domain)}) as children:
-            rig, monitor = children.start(*SIMULATOR, *plan.simulator), children.start(*MONITOR, *plan.monitor)
+            rig = children.start("hd_sim_node", "hd_sim_node", *plan.simulator)
+            monitor = children.start("hd_monitor_node", "hd_monitor.ros", *plan.monitor)
             screen.line(f"hd_sim_node      {plan.description}  (process {rig})")
             screen.line(f"hd_monitor_node  watches it over DDS, ROS_DOMAIN_ID={plan.domain}  (process {monitor})")
             screen.line()
@@ -111,7 +106,8 @@ def _conclude(plan: Plan, screen: Screen, view: View) -> bool:
     """Print the final status, where it came from, and whether it names what was simulated."""
     component, model = view.values.get("component", ""), plan.rig.model
     relative = "relative only, " if view.values.get("index kind") == "relative" else ""
-    indexes = {"flexspline": model.flexspline.index, "circular spline": model.circular_spline.index}
+    simulated = {"flexspline": model.flexspline.index, "circular spline": model.circular_spline.index}
+    indexes = {s: f"{view.index(s)}   ({relative}simulated {100 * index:.2f} %)" for s, index in simulated.items()}
     screen.line()
     screen.table(
         "Final status",
@@ -119,10 +115,7 @@ def _conclude(plan: Plan, screen: Screen, view: View) -> bool:
             "component": component,
             "fault_code": view.values.get("fault_code", ""),
             "level": screen.colour(view.level),
-            **{
-                name: f"{view.index(name)}   ({relative}simulated {100 * index:.2f} %)"
-                for name, index in indexes.items()
-            },
+            **indexes,
             "limits": f"warn {view.values.get('warn limit (%)')} %, error {view.values.get('error limit (%)')} %",
             "message": view.message,
         },

@@ -26,12 +26,7 @@ _FIRST_PORT, _PORTS_PER_DOMAIN = 7410, 250  # of a domain's first participant, b
 
 
 class Plan:
-    """The rig, the arguments of both nodes, and the verdict to expect.
-
-    Parameters
-    ----------
-    arguments : argparse.Namespace
-        Of the command.
+    """The rig, the arguments of both nodes, and the verdict to expect, from the command's arguments.
 
     Raises
     ------
