@@ -43,7 +43,8 @@ def compare_motion(samples: JointSamples, *, minimum_speed: float, reduction: fl
     if times.size < 3 or times[-1] - times[0] < 2.0 * WINDOW:
         return MotionAgreement(False, None)
     steps = angle[1:] - angle[:-1]
-    steps -= math.tau * np.rint(steps / math.tau) * (np.abs(steps) > _WRAPPED)
+    if (wrapped := np.abs(steps) > _WRAPPED).any():
+        steps -= math.tau * np.rint(steps / math.tau) * wrapped
     first = np.flatnonzero(np.diff(np.floor((times[1:] - times[0]) / WINDOW), prepend=-1.0))
     moved = np.add.reduceat(steps, first)
     said = np.add.reduceat(0.5 * (speed[1:] + speed[:-1]) * (times[1:] - times[:-1]), first)

@@ -28,7 +28,7 @@ class RmsAccumulator:
 
     def __init__(self, width: float) -> None:
         self._width = width
-        self._sums: dict[float, FloatArray] = {}  # by the number of the bin: of speeds, of squares, of ones
+        self._sums: dict[int, FloatArray] = {}  # by the number of the bin: of speeds, of squares, of ones
 
     def add(self, speed_rpm: npt.ArrayLike, values: npt.ArrayLike) -> None:
         """Add samples (NaN ones are left out): wave-generator speeds [rpm] and values, both of shape (N,)."""
@@ -36,10 +36,14 @@ class RmsAccumulator:
         value = np.asarray(values, dtype=np.float64)
         good = np.isfinite(speed) & np.isfinite(value)
         speed, value = speed[good], value[good]
-        numbers, place = np.unique(np.rint(speed / self._width), return_inverse=True)
-        sums = np.stack([np.bincount(place, weights) for weights in (speed, value * value, np.ones(speed.size))])
-        for number, own in zip(numbers.tolist(), sums.T, strict=True):
-            self._sums[number] = self._sums.get(number, 0.0) + own
+        if not speed.size:
+            return
+        numbers = np.rint(speed / self._width).astype(np.int64)
+        first = int(numbers.min())
+        place = numbers - first
+        sums = np.stack([np.bincount(place, speed), np.bincount(place, value * value), np.bincount(place)], axis=1)
+        for offset in np.flatnonzero(sums[:, 2]).tolist():
+            self._sums[first + offset] = self._sums.get(first + offset, 0.0) + sums[offset]
 
     def curve(self) -> tuple[SpeedBin, ...]:
         """Return the bins that have samples, by rising speed."""
