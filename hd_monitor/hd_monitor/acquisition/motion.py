@@ -7,7 +7,6 @@ import numpy as np
 import numpy.typing as npt
 
 from ..arrays import BoolArray, FloatArray
-from ..interpolation import cubics
 from .clock import recover_clock
 
 _LARGEST_HOLE = 0.25  # s; within that, a joint's speed can change in ways that interpolation cannot follow
@@ -145,7 +144,9 @@ class MotionTrack(Track):
         measured = np.isfinite(effort)
         polynomials = np.empty((10, steps.size))  # of every interval, then of the times: far fewer gathers and products
         polynomials[0], polynomials[1] = known[:-1], steps
-        polynomials[2:6] = cubics(position[:-1], position[1:], velocity[:-1] * steps, velocity[1:] * steps)
+        rise, slope, next_slope = position[1:] - position[:-1], velocity[:-1] * steps, velocity[1:] * steps
+        polynomials[2], polynomials[3] = position[:-1], slope
+        polynomials[4], polynomials[5] = 3.0 * rise - 2.0 * slope - next_slope, slope + next_slope - 2.0 * rise
         polynomials[6], polynomials[7] = velocity[:-1], velocity[1:] - velocity[:-1]
         polynomials[8], polynomials[9] = effort[:-1], effort[1:] - effort[:-1]
         start, length, q0, q1, q2, q3, v0, v1, e0, e1 = np.repeat(polynomials, _in_each(known, times), axis=1)

