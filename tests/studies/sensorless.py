@@ -18,7 +18,6 @@ from scipy import stats
 
 from hd_monitor.acquisition.record import JointSamples
 from hd_monitor.diagnosis import Component, Judge
-from hd_monitor.diagnosis.tooth_ranking import describe_ranking
 from hd_monitor.identification.result import Identification
 from hd_monitor.identification.sensorless.identifier import SensorlessIdentifier
 from hd_monitor.offline.identify_teeth import rank_tooth_pairs
@@ -173,7 +172,7 @@ def study_recordings(folder: Path) -> list[str]:
                     for size, std, chance in zip(side.amplitude, side.std, side.chance, strict=True)
                 )
                 rows.append(f"    {side.name}: {sizes}; {side.dominance[0]:.3f} | {side.dominance[1]:.3f}")
-            rows.append(f"    teeth: {describe_ranking(rank_tooth_pairs(samples, source=source))}")
+            rows.append(f"    teeth: {rank_tooth_pairs(samples, source=source).statement}")
             for z1, z2 in PLACEBO_TEETH:
                 other = JointSettings.from_mapping(
                     UR10E

@@ -13,7 +13,6 @@ from ..identification.identifier import Identifier
 from ..identification.result import Identification
 from ..identification.sensorless.agreement import DirectionEvidence
 from ..identification.sensorless.identifier import SensorlessIdentifier
-from ..identification.teeth.ranking import ToothPairRanking
 from ..settings import JointSettings
 from .bag import Bag
 from .errors import BagError
@@ -21,6 +20,7 @@ from .identify_teeth import ToothCheck
 from .plan import JointPlan, Request, plan
 from .replay import SomeIdentifier
 from .run import run
+from .tooth_ranking import ConcludedRanking
 
 WHOLE_RECORDING: Mapping[str, Any] = {"analysis.memory": 86_400.0, "dynamics.refine": True}
 """What a parameter file says for watching does not suit identification: nothing fades, and fn and ζ are sought."""
@@ -39,7 +39,7 @@ class JointIdentification:
     """Recordings with usable data."""
     found: Identification | None = None
     """None if there was not enough motion."""
-    teeth: ToothPairRanking | None = None
+    teeth: ConcludedRanking | None = None
     """None if there was no motion at all."""
     last: Assessment | None = None
     """The last one of the last usable recording."""

@@ -10,14 +10,13 @@ import yaml
 from .. import __version__
 from ..acquisition.quality import Quality
 from ..diagnosis.limitations import describe_limitation
-from ..diagnosis.tooth_ranking import describe_ranking
 from ..identification.teeth.candidates import ToothPair
-from ..identification.teeth.ranking import ToothPairRanking
 from . import identify_numbers as numbers
 from .identify import JointIdentification
 from .identify_numbers import Estimate, Harmonic
 from .parameters import NODE
 from .result import line_entries, plain
+from .tooth_ranking import ConcludedRanking
 
 SHOWN = 5
 """Candidate tooth pairs listed."""
@@ -156,11 +155,11 @@ def _teeth_entry(teeth: ToothPair) -> dict[str, int]:
     return {"flexspline_teeth": int(teeth.flexspline), "circular_spline_teeth": int(teeth.circular_spline)}
 
 
-def _teeth(ranking: ToothPairRanking | None) -> dict[str, Any] | None:
+def _teeth(ranking: ConcludedRanking | None) -> dict[str, Any] | None:
     if ranking is None:
         return None
     return {
-        "statement": describe_ranking(ranking),
+        "statement": ranking.statement,
         "conclusive": ranking.conclusive,
         "margin": ranking.margin,
         "travel_deg": math.degrees(ranking.travel),

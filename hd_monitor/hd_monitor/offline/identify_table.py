@@ -4,7 +4,6 @@ import math
 from collections.abc import Iterator
 
 from ..diagnosis.limitations import describe_limitation
-from ..diagnosis.tooth_ranking import describe_ranking
 from ..identification.result import Identification
 from . import identify_numbers as numbers
 from .identify import JointIdentification
@@ -30,7 +29,7 @@ def _head(joint: JointIdentification, found: Identification) -> Iterator[str]:
     if teeth_contradict(joint):
         given = joint.settings.reducer
         yield (
-            f"  WRONG TEETH? {describe_ranking(joint.teeth) if joint.teeth else ''}; "
+            f"  WRONG TEETH? {joint.teeth.statement if joint.teeth else ''}; "
             f"given are {given.flexspline_teeth}/{given.circular_spline_teeth}, so nothing below holds: "
             "correct reducer.* and identify again"
         )
@@ -112,7 +111,7 @@ def _teeth(joint: JointIdentification) -> Iterator[str]:
     if ranking is None:
         return
     given = joint.settings.reducer
-    yield f"  tooth check ({given.flexspline_teeth}/{given.circular_spline_teeth} given): {describe_ranking(ranking)}"
+    yield f"  tooth check ({given.flexspline_teeth}/{given.circular_spline_teeth} given): {ranking.statement}"
     best = ranking.ranked[0].log_evidence
     for pair in ranking.ranked[:SHOWN]:
         if math.isfinite(pair.log_evidence):

@@ -11,13 +11,14 @@ from ..acquisition.record import JointSamples, Record
 from ..assessment import Assessment
 from ..errors import ParameterError
 from ..identification.teeth.candidates import Candidate, ToothPair, every_pair
-from ..identification.teeth.ranking import ToothPairRanking, rank
+from ..identification.teeth.ranking import odds_as_pair, rank
 from ..orders.joint_segment import JointSegmentCutter, one_speed, samples_of_records
 from ..orders.line_orders import LineOrders
 from ..orders.regression import Products, solve
 from ..orders.scan import OrderScan
 from ..reducer import WAVE_GENERATOR_LOBES
 from ..settings import JointSettings
+from .tooth_ranking import ConcludedRanking
 
 LONGEST = 600.0
 """Motion [s] that the check uses: more would add little, and memory stays flat."""
@@ -31,7 +32,7 @@ def rank_tooth_pairs(
     source: str = "joint_effort",
     candidates: Iterable[tuple[int, int]] | None = None,
     minimum_speed: float = 0.03,
-) -> ToothPairRanking:
+) -> ConcludedRanking:
     """Rank tooth pairs by the evidence for their lines in a recording.
 
     Parameters
@@ -60,7 +61,7 @@ def rank_tooth_pairs(
         raise ParameterError("there is no candidate tooth pair to look for; leave `candidates` out for all of them")
     for pair in pairs:
         if pair.circular_spline - pair.flexspline != WAVE_GENERATOR_LOBES:
-            raise ParameterError(f"{pair.flexspline}/{pair.circular_spline} teeth do not differ by 2: not looked for")
+            raise ParameterError(f"{pair} teeth do not differ by 2: not looked for")
     lowest = min(LineOrders.of_pair(pair.lines(0.5)).reference_orders.min() for pair in pairs)
     highest = max(LineOrders.of_pair(pair.lines()).reference_orders.max() for pair in pairs)
     orders = np.arange(max(math.floor(lowest), 2), math.ceil(highest) + 1)
@@ -74,8 +75,11 @@ def rank_tooth_pairs(
     multiples = [(0.5, *range(2, int(orders[-1] // pair.circular_spline) + 1)) for pair in pairs]
     wanted = [Candidate(teeth=pair, further=more) for pair, more in zip(pairs, multiples, strict=True)]
 
-    def ranked(parts: Sequence[Products]) -> ToothPairRanking:
-        return rank(wanted, [partial(solve, part) for part in parts], travel=travel, speed=one_speed(segments))
+    def ranked(parts: Sequence[Products]) -> ConcludedRanking:
+        fits = [partial(solve, part) for part in parts]
+        found = rank(wanted, fits).ranked
+        as_pair = odds_as_pair(found[0].teeth, fits) if found[0].lines_found else 0.0
+        return ConcludedRanking(ranked=found, as_pair=as_pair, travel=travel, speed=one_speed(segments))
 
     rankings = [ranked(scan.by_direction())]
     if not rankings[0].conclusive and any(found.lines_found for found in rankings[0].ranked):
@@ -118,7 +122,7 @@ class ToothCheck:
         """End a recording."""
         self._offset = self._end + _APART
 
-    def ranking(self) -> ToothPairRanking | None:
+    def ranking(self) -> ConcludedRanking | None:
         """Return the candidate pairs by falling evidence; None if there was no motion."""
         if not self._parts:
             return None

@@ -33,6 +33,10 @@ class ToothPair(NamedTuple):
     flexspline: float
     circular_spline: float
 
+    def __str__(self) -> str:
+        """Return the teeth as technicians write them, 200/202."""
+        return f"{self.flexspline:g}/{self.circular_spline:g}"
+
     @classmethod
     def of(cls, reducer: Reducer) -> "ToothPair":
         """Return the pair, two teeth apart, whose lines are those of a reducer."""

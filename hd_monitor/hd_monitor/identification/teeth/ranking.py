@@ -3,7 +3,6 @@
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from enum import StrEnum
 
 import numpy as np
 
@@ -21,17 +20,6 @@ CERTAIN = 1e-6
 
 FitLines = Callable[[LineOrders], LineFit | None]
 """Fits lines with their reference orders to one part of the data; None where it does not determine them."""
-
-
-class Ambiguity(StrEnum):
-    """Why a ranking is not conclusive."""
-
-    NO_MOTION = "no_motion"
-    NO_LINES = "no_lines"
-    SECOND_PAIR = "second_pair"
-    SINGLE_LINE = "single_line"
-    ONE_SPEED = "one_speed"
-    ENCODER = "encoder"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -69,49 +57,14 @@ class ToothPairRanking:
     Attributes
     ----------
     ranked : tuple of ToothPairEvidence
-    as_pair : float
-        Log odds of the first pair's two lines against a single line: near 0 if only one stands out, or if the travel
-        does not part them.
-    travel : float
-        Range of the output angle covered [rad].
-    speed : float
-        Output speed [rad/s] if there was only one; NaN if it varied.
     """
 
     ranked: tuple[ToothPairEvidence, ...]
-    as_pair: float
-    travel: float
-    speed: float
 
     @property
     def margin(self) -> float:
         """Difference of the log evidence of the first two."""
         return self.ranked[0].log_evidence - self.ranked[1].log_evidence if len(self.ranked) > 1 else math.inf
-
-    @property
-    def ambiguity(self) -> Ambiguity | None:
-        """Why the ranking is not conclusive; None if it is.
-
-        It is if both of the first pair's lines stand out, as two and not one, and it leads by odds of at least 1000
-        to 1, over motion at more than one speed, and it is not where an encoder's errors lie.
-        """
-        best = self.ranked[0]
-        if not math.isfinite(best.log_evidence):
-            return Ambiguity.NO_MOTION
-        if not best.lines_found:
-            return Ambiguity.NO_LINES
-        if self.margin < MARGIN:
-            return Ambiguity.SECOND_PAIR
-        if best.lines_found < 2 or self.as_pair < MARGIN:
-            return Ambiguity.SINGLE_LINE
-        if math.isfinite(self.speed):
-            return Ambiguity.ONE_SPEED
-        return Ambiguity.ENCODER if best.teeth.is_beside_encoder else None
-
-    @property
-    def conclusive(self) -> bool:
-        """Whether the first pair is the right one beyond reasonable doubt."""
-        return self.ambiguity is None
 
     def lead(self, given: ToothPair) -> float:
         """Log evidence of the first pair less that of the one given, which must be among them."""
@@ -138,14 +91,12 @@ def contradiction(given: Reducer, other: ToothPair, lines: Sequence[float] = ())
     return blocker(
         code,
         given=f"{given.flexspline_teeth}/{given.circular_spline_teeth}",
-        other=f"{other.flexspline:g}/{other.circular_spline:g}",
+        other=str(other),
         lines=", ".join(f"{line:g}" for line in lines),
     )
 
 
-def rank(
-    candidates: Sequence[Candidate], parts: Sequence[FitLines], *, travel: float = math.nan, speed: float = math.nan
-) -> ToothPairRanking:
+def rank(candidates: Sequence[Candidate], parts: Sequence[FitLines]) -> ToothPairRanking:
     """Rank candidates by the evidence for their lines, summed over parts of the data.
 
     Parameters
@@ -153,20 +104,9 @@ def rank(
     candidates : sequence of Candidate
     parts : sequence of callable
         Fit lines to parts of the data that do not add up coherently, directions of motion for example.
-    travel : float
-        Range of the output angle [rad].
-    speed : float
-        Output speed [rad/s] if there was only one; NaN if it varied.
     """
-    found = {candidate.teeth: _evidence(candidate, parts) for candidate in candidates}
-    ranked = sorted(found.values(), key=lambda evidence: (-evidence.log_evidence, evidence.teeth))
-    best = ranked[0]
-    return ToothPairRanking(
-        ranked=tuple(ranked),
-        as_pair=_odds_as_pair(LineOrders.of_pair(best.teeth.lines()), parts) if best.lines_found else 0.0,
-        travel=travel,
-        speed=speed,
-    )
+    evidence = [_evidence(candidate, parts) for candidate in candidates]
+    return ToothPairRanking(ranked=tuple(sorted(evidence, key=lambda found: (-found.log_evidence, found.teeth))))
 
 
 def _evidence(candidate: Candidate, parts: Sequence[FitLines]) -> ToothPairEvidence:
@@ -181,8 +121,7 @@ def _evidence(candidate: Candidate, parts: Sequence[FitLines]) -> ToothPairEvide
         chances[k] = float(chance.min())
         found[k] = [order for order, own in zip(candidate.teeth.lines(k), chance, strict=True) if own < CHANCE]
     if any(found.values()):
-        further = [LineOrders.of_pair(candidate.teeth.lines(k)) for k in candidate.further]
-        total = sum(fit.log_evidence for orders in further for fit in _fits(orders, parts))
+        total = sum(_log_evidence(LineOrders.of_pair(candidate.teeth.lines(k)), parts) for k in candidate.further)
     return ToothPairEvidence(
         teeth=candidate.teeth,
         log_evidence=total + sum(determined.values()) if determined else -math.inf,
@@ -202,10 +141,10 @@ def _log_evidence(orders: LineOrders, parts: Sequence[FitLines]) -> float:
     return sum(fit.log_evidence for fit in _fits(orders, parts))
 
 
-def _odds_as_pair(pair: LineOrders, parts: Sequence[FitLines]) -> float:
+def odds_as_pair(teeth: ToothPair, parts: Sequence[FitLines]) -> float:
     """Logarithm of the odds for two lines against a single one, at either place or between: what travel must part."""
-    lower, upper = pair.lines
-    single = [replace(pair, lines=np.array([order])) for order in np.arange(lower, upper + 1.0)]
+    pair = LineOrders.of_pair(teeth.lines())
+    single = [replace(pair, lines=np.array([order])) for order in np.arange(pair.lines[0], pair.lines[1] + 1.0)]
     return _log_evidence(pair, parts) - max(0.0, *(_log_evidence(orders, parts) for orders in single))
 
 

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from hd_monitor.acquisition.record import JointSamples, Record
-from hd_monitor.diagnosis.tooth_ranking import describe_ranking
 from hd_monitor.errors import ParameterError
 from hd_monitor.identification.teeth.candidates import ToothPair, every_pair
 from hd_monitor.model import Dynamics, ParametricModel, StiffnessSeries, Torque
@@ -31,8 +30,8 @@ def test_two_lines_determine_the_teeth_among_all_pairs(teeth):
     assert ranking.ranked[0].teeth == ToothPair(*teeth)
     assert ranking.conclusive
     assert ranking.margin > math.log(1000.0)
-    assert f"{teeth[0]}/{teeth[1]} teeth fit best, by odds of" in describe_ranking(ranking)
-    assert "mount" in describe_ranking(ranking)
+    assert f"{teeth[0]}/{teeth[1]} teeth fit best, by odds of" in ranking.statement
+    assert "mount" in ranking.statement
     assert len(ranking.ranked) == len(every_pair())
     evidence = [found.log_evidence for found in ranking.ranked]
     assert evidence == sorted(evidence, reverse=True)
@@ -42,7 +41,7 @@ def test_one_line_alone_is_not_conclusive():
     ranking = rank_tooth_pairs(swinging({200: 0.3}))
     assert {found.teeth for found in ranking.ranked[:3]} >= {(198, 200), (200, 202)}
     assert not ranking.conclusive
-    assert "not conclusive" in describe_ranking(ranking)
+    assert "not conclusive" in ranking.statement
 
 
 def test_a_strong_line_with_a_companion_lost_in_noise_is_not_conclusive():
@@ -56,7 +55,7 @@ def test_noise_alone_is_not_conclusive():
         ranking = rank_tooth_pairs(swinging({}, seed=seed))
         assert not ranking.conclusive
         assert ranking.ranked[0].lines_found == 0
-        assert "stand out of the noise" in describe_ranking(ranking)
+        assert "stand out of the noise" in ranking.statement
 
 
 def test_little_travel_is_not_conclusive():
@@ -73,14 +72,14 @@ def test_one_speed_is_not_conclusive_because_any_fixed_frequency_would_fit():
     ranking = rank_tooth_pairs(JointSamples(times=times, angle=angle, speed=np.full(times.size, 0.5), effort=effort))
     assert ranking.ranked[0].teeth == ToothPair(160, 162)
     assert not ranking.conclusive
-    assert "vary the speed" in describe_ranking(ranking)
+    assert "vary the speed" in ranking.statement
 
 
 def test_an_encoder_s_orders_are_not_taken_for_teeth():
     ranking = rank_tooth_pairs(swinging({255: 0.2, 257: 0.2}))
     assert ranking.ranked[0].teeth == ToothPair(255, 257)
     assert not ranking.conclusive
-    assert "encoder" in describe_ranking(ranking)
+    assert "encoder" in ranking.statement
 
 
 def test_multiples_belong_to_their_pair():
@@ -106,7 +105,7 @@ def test_velocity_can_be_the_signal():
     ranking = rank_tooth_pairs(samples, source="joint_velocity")
     assert ranking.ranked[0].teeth == ToothPair(160, 162)
     assert ranking.conclusive
-    assert "No motion in which lines could show" in describe_ranking(rank_tooth_pairs(samples))
+    assert "No motion in which lines could show" in rank_tooth_pairs(samples).statement
 
 
 def accelerations(teeth, from_hz, rate_hz, seconds, noise=0.05):

@@ -1,0 +1,71 @@
+"""What a ranking of tooth pairs over whole recordings proves, in words for a technician."""
+
+import math
+from dataclasses import dataclass
+
+from ..identification.teeth.ranking import MARGIN, ToothPairRanking
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ConcludedRanking(ToothPairRanking):
+    """Candidate pairs by falling evidence, and whether the first is the right one beyond reasonable doubt.
+
+    Attributes
+    ----------
+    as_pair : float
+        Log odds of the first pair's two lines against a single line: near 0 if only one stands out, or if the travel
+        does not part them.
+    travel : float
+        Range of the output angle covered [rad].
+    speed : float
+        Output speed [rad/s] if there was only one; NaN if it varied.
+    """
+
+    as_pair: float
+    travel: float
+    speed: float
+
+    @property
+    def conclusive(self) -> bool:
+        """Whether the first pair is the right one beyond reasonable doubt."""
+        return self._ambiguity() is None
+
+    @property
+    def statement(self) -> str:
+        """The conclusion in one sentence."""
+        if ambiguity := self._ambiguity():
+            return ambiguity
+        odds = (
+            f"by odds of 10^{self.margin / math.log(10.0):.0f} to 1" if len(self.ranked) > 1 else "being the only one"
+        )
+        return f"{self.ranked[0].teeth} teeth fit best, {odds}; the mount does not show in the lines"
+
+    def _ambiguity(self) -> str | None:
+        """Why the ranking is not conclusive; None if it is.
+
+        It is if both of the first pair's lines stand out, as two and not one, and it leads by odds of at least 1000
+        to 1, over motion at more than one speed, and it is not where an encoder's errors lie.
+        """
+        best, travel = self.ranked[0], f"{math.degrees(self.travel):.0f}° of travel"
+        if not math.isfinite(best.log_evidence):
+            return (
+                "No motion in which lines could show: let the joint turn faster, or publish its states at a higher rate"
+            )
+        if not best.lines_found:
+            return (
+                f"No tooth pair's lines stand out of the noise, not even those of {best.teeth}, which fit best: "
+                "record longer"
+            )
+        if self.margin < MARGIN:
+            why = f"{self.ranked[1].teeth} nearly as well (odds {math.exp(self.margin):.0f} to 1 over {travel})"
+        elif best.lines_found < 2 or self.as_pair < MARGIN:
+            why = f"a single line explains {travel} nearly as well, and may be something else's"
+        elif math.isfinite(self.speed):
+            why = (
+                f"at one speed ({self.speed:.2g} rad/s) a fixed frequency of the machine looks the same: vary the speed"
+            )
+        elif best.teeth.is_beside_encoder:
+            why = "an encoder's own errors come at these orders too"
+        else:
+            return None
+        return f"{best.teeth} teeth fit best but {why}: not conclusive"
