@@ -8,7 +8,7 @@ import numpy as np
 
 from ...arrays import BoolArray, FloatArray
 from ...limitation import Limitation, LimitationCode, blocker, doubt
-from ...reducer import LinePair, Reducer
+from ...reducer import Reducer
 from ..fit.gauss_newton import Fit, FitStatus
 from ..fit.indexes import Indexes
 from ..fit.linearisation import Predictor
@@ -204,15 +204,11 @@ def _is_fragile(fit: FitSummary, warn_index: float) -> bool:
         if not fit.active[place]:
             test = fit.score_tests[place]
             error = 1.0 / math.sqrt(1.0 / trusted**2 + 1.0 / test.std**2)
-            shift += (2.0 * error * _slope_of_ratio(u, fit.values, test.response, index)) ** 2
+            # change of the logarithm of each spline's index per unit of the unknown
+            slopes = [
+                float(fit.values[part] @ test.response[part]) / size**2
+                for part, size in ((u.flexspline, index.flexspline), (u.circular_spline, index.circular_spline))
+            ]
+            shift += (2.0 * error * (slopes[0] - slopes[1])) ** 2
     shift = math.sqrt(shift)
     return shift >= _NOTABLE and abs(math.log(index.flexspline / index.circular_spline)) <= shift
-
-
-def _slope_of_ratio(unknowns: Unknowns, values: FloatArray, response: FloatArray, index: LinePair) -> float:
-    """Change of ln(flexspline index / circular spline index) per unit of the unknown that `response` belongs to."""
-    slopes = [
-        float(values[part] @ response[part]) / size**2
-        for part, size in ((unknowns.flexspline, index.flexspline), (unknowns.circular_spline, index.circular_spline))
-    ]
-    return slopes[0] - slopes[1]

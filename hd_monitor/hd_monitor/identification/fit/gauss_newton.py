@@ -129,6 +129,7 @@ class Problem:
         return replace(fit, status=FitStatus.ON_BOUND) if on_bound.any() else fit
 
     def _descend(self, fit: Fit, rounds: int) -> Fit:
+        bounds = self.predictor.unknowns.bounds()
         for _ in range(rounds):
             if fit.step_size < CONVERGED:
                 break
@@ -136,7 +137,7 @@ class Problem:
                 return self._moved(fit)
             step = fit.step * self._room(fit.values, fit.step)
             for _ in range(_HALVINGS):
-                trial = self.at(self._bounded(fit.values + step))
+                trial = self.at(np.clip(fit.values + step, -bounds, bounds))
                 if math.isfinite(trial.cost) and trial.cost < fit.cost:
                     break
                 step = 0.4 * step
@@ -195,11 +196,6 @@ class Problem:
         fit = self.solve(start, rounds=rounds)
         freedom = fit.equations.freedom
         return freedom * math.log(self.floor.mean * fit.equations.cost) + self.prior.cost(fit.values), self, fit
-
-    def _bounded(self, values: FloatArray) -> FloatArray:
-        """Return the values with those that have bounds kept within."""
-        bounds = self.predictor.unknowns.bounds()
-        return np.clip(values, -bounds, bounds)
 
     def _room(self, values: FloatArray, step: FloatArray) -> float:
         """Part of a step that keeps the stiffness positive."""

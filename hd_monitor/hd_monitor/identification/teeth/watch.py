@@ -10,7 +10,7 @@ from ...model.parameters import Dynamics
 from ...orders.order_spectrum import OrderSpectrum
 from ...reducer import Reducer
 from ..fit.gauss_newton import Fit
-from .candidates import Candidate, ToothPair, strongest
+from .candidates import ToothPair, strongest
 from .ranking import contradiction, rank, shows_two_lines
 from .spectrum import with_segment
 
@@ -107,7 +107,8 @@ class ToothWatch:
             return self
         ranking = rank(candidates, [self.signal.solve])
         best, own = ranking.ranked[0], ToothPair.of(given)
-        shown = {candidate.teeth for candidate in candidates if self._shows_pair(candidate)}
+        far = self.signal.turns > APART
+        shown = {candidate.teeth for candidate in candidates if far and shows_two_lines(candidate, [self.signal.solve])}
         if ranking.lead(own) > LEAD and (best.teeth in shown or (best.pairs_found > 1 and not one_speed)):
             return replace(self, asked=asked, seconds=seconds, doubt=ranking.contradiction(given))
         open_to = set(asked) if self.signal.turns < APART and not one_speed else shown
@@ -115,9 +116,6 @@ class ToothWatch:
         better = trial(given, [teeth.reducer(given.mount) for teeth in near]) if near else None
         doubt = contradiction(given, ToothPair.of(better)) if better is not None else None
         return replace(self, asked=asked, seconds=seconds, doubt=doubt)
-
-    def _shows_pair(self, candidate: Candidate) -> bool:
-        return self.signal.turns > APART and shows_two_lines(candidate, [self.signal.solve])
 
     @property
     def _is_unexplained(self) -> bool:
