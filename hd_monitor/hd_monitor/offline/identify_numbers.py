@@ -54,21 +54,14 @@ class Harmonic(NamedTuple):
     """[rad]"""
 
 
-class BothSplines(NamedTuple):
-    """Every β of the circular spline and of the flexspline."""
-
-    circular_spline: list[Harmonic]
-    flexspline: list[Harmonic]
-
-
-def harmonics(found: Identification) -> BothSplines:
-    """Magnitude and phase of every identified β."""
+def harmonics(found: Identification) -> dict[str, list[Harmonic]]:
+    """Magnitude and phase of every identified β, by the spline's name: ``circular_spline`` and ``flexspline``."""
 
     def of(spline: int, phasors: ComplexArray) -> list[Harmonic]:
         own = [None] * len(phasors) if found.beta_covariance is None else found.beta_covariance[spline]
         return [_harmonic(k, complex(z), c) for k, (z, c) in enumerate(zip(phasors, own, strict=True), start=1)]
 
-    return BothSplines(of(0, found.circular_spline), of(1, found.flexspline))
+    return {"circular_spline": of(0, found.circular_spline), "flexspline": of(1, found.flexspline)}
 
 
 def magnitude_interval(size: float, std: float) -> tuple[float, float]:

@@ -37,15 +37,16 @@ def joint_entry(joint: JointIdentification) -> dict[str, Any]:
     """Write one joint's part of the JSON."""
     found, settings = joint.found, joint.settings
     assert found is not None
-    both = numbers.harmonics(found)
     entry: dict[str, Any] = {
         "joint": joint.plan.joint,
         "bags": joint.bags,
         "source": settings.input.source,
         "relative": bool(found.relative),
         "torque_source": joint.last.torque_source if joint.last and not settings.sensorless else "unknown",
-        "circular_spline": _spline(found.index.circular_spline, found.index_std.circular_spline, both.circular_spline),
-        "flexspline": _spline(found.index.flexspline, found.index_std.flexspline, both.flexspline),
+        **{
+            name: _spline(getattr(found.index, name), getattr(found.index_std, name), betas)
+            for name, betas in numbers.harmonics(found).items()
+        },
         "index_correlation": found.index_correlation,
         **dict.fromkeys(("natural_frequency", "damping_ratio", "load_fluctuation")),
         "instability_speed_rpm": found.critical_speed,

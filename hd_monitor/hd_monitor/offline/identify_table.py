@@ -50,7 +50,7 @@ def _splines(joint: JointIdentification, found: Identification) -> Iterator[str]
         return
     kind = "relative β, no torque is known" if found.relative else "β of the mean stiffness"
     yield f"  {kind:<32} %  95 % interval               phase, rad"
-    for name, harmonics, index in zip(_SPLINES, numbers.harmonics(found), indexes, strict=True):
+    for name, harmonics, index in zip(_SPLINES, numbers.harmonics(found).values(), indexes, strict=True):
         for h in harmonics:
             phase = f"{h.phase:+.3f} ± {h.phase_std:.2g}" if math.isfinite(h.phase) else "in the noise"
             yield f"    {name:<16} k = {h.k}   {_value(h.beta, 100.0):<45} {phase}"

@@ -24,7 +24,7 @@ def found(circular_spline: complex, flexspline: complex, std: float) -> Identifi
 
 
 def test_a_beta_far_above_the_noise_has_the_noises_deviation() -> None:
-    (beta,) = harmonics(found(0.0, 0.1 * np.exp(0.7j), 0.001)).flexspline
+    (beta,) = harmonics(found(0.0, 0.1 * np.exp(0.7j), 0.001))["flexspline"]
     assert beta.beta.value == pytest.approx(0.1, rel=2e-4)
     assert beta.beta.std == pytest.approx(0.001, rel=1e-2)
     assert beta.phase == pytest.approx(0.7)
@@ -32,7 +32,7 @@ def test_a_beta_far_above_the_noise_has_the_noises_deviation() -> None:
 
 
 def test_a_beta_within_the_noise_has_no_phase_and_an_interval_that_begins_at_nothing() -> None:
-    (beta,) = harmonics(found(0.001, 0.1, 0.005)).circular_spline
+    (beta,) = harmonics(found(0.001, 0.1, 0.005))["circular_spline"]
     assert math.isnan(beta.phase)
     assert beta.beta.low == 0.0
     assert beta.beta.high >= 0.005
@@ -42,7 +42,7 @@ def test_a_beta_within_the_noise_has_no_phase_and_an_interval_that_begins_at_not
 def test_intervals_hold_the_magnitude_as_often_as_they_say(size: float) -> None:
     std, rng = 0.002, np.random.default_rng(5)
     draws = size + std * (rng.standard_normal(1000) + 1j * rng.standard_normal(1000))
-    betas = [harmonics(found(draw, 0.1, std)).circular_spline[0].beta for draw in draws]
+    betas = [harmonics(found(draw, 0.1, std))["circular_spline"][0].beta for draw in draws]
     covered = np.mean([beta.low <= size <= beta.high for beta in betas])
     assert 0.93 < covered < 0.98
 

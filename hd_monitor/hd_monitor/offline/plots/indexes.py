@@ -55,15 +55,13 @@ def indexes_plot(
 def _levels(axes: Any, seconds: FloatArray, step: float, levels: Sequence[int]) -> None:
     """Draw the level as a ribbon, hatched, so that its colours are not needed."""
     changes = np.flatnonzero((np.diff(levels) != 0) | (np.diff(seconds) >= 2 * step)) + 1
-    named: set[int] = set()
     for first, end in itertools.pairwise([0, *changes.tolist(), len(levels)]):
         level = levels[first]
         axes.axvspan(
             seconds[first] - step, seconds[end - 1], facecolor=_LEVEL_COLOURS[level], alpha=0.55,
             hatch=_LEVEL_HATCHES[level], edgecolor="white", linewidth=0,
-            label="_" if level in named else _LEVELS[level],
+            label="_" if level in levels[:first] else _LEVELS[level],
         )  # fmt: skip
-        named.add(level)
     axes.set_yticks([])
     axes.set_ylim(0, 1)
     axes.grid(visible=False)
