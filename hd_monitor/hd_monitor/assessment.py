@@ -83,10 +83,8 @@ class Assessment:
             return None
         reducer = self.settings.reducer
         rpm = abs(float(steady.speed.mean())) * reducer.reduction * 60.0 / math.tau
-        k = self.strongest_pair
-        around = reducer.line_frequencies(rpm, k)
-        if around.flexspline >= 0.5 / steady.period:
-            k, around = 1, reducer.line_frequencies(rpm, 1)
-        if around.flexspline >= 0.5 / steady.period:
-            return None
-        return zoom_spectrum(steady.acceleration, steady.period, around=around, k=k)
+        for k in (self.strongest_pair, 1):
+            around = reducer.line_frequencies(rpm, k)
+            if around.flexspline < 0.5 / steady.period:
+                return zoom_spectrum(steady.acceleration, steady.period, around=around, k=k)
+        return None

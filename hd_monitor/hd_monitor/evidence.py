@@ -101,12 +101,8 @@ class Evidence:
     def level(self, period: AssembledPeriod) -> float:
         """RMS of a period's vibration at the sensor's radius [m/s²]; NaN without any."""
         values = self._tangential(period.vibration)
-        squares = values * values
-        power = float(squares.sum())
-        if math.isnan(power):
-            squares = squares[np.isfinite(squares)]
-            power = float(squares.sum())
-        return math.sqrt(power / squares.size) if squares.size else math.nan
+        values = values[np.isfinite(values)]
+        return math.sqrt(float(values @ values) / values.size) if values.size else math.nan
 
     def _tangential(self, acceleration: FloatArray) -> FloatArray:
         """Vibration at the sensor's radius [m/s²]; gravity and the arm's own motion removed from an IMU's signal."""

@@ -85,12 +85,7 @@ def internal_error(error: Exception) -> Verdict:
     )
 
 
-WAITING = Verdict(
-    component=Component.UNDETERMINED,
-    level=Level.WARN,
-    fault_code=FaultCode.UNDETERMINED,
-    reason="Waiting for the first data: no verdict is possible yet",
-)
+WAITING = Verdict.naming(Component.UNDETERMINED, Level.WARN, "Waiting for the first data: no verdict is possible yet")
 NO_SIMULATED_TIME = replace(
     WAITING, reason="use_sim_time is set, but no simulated time has arrived yet: does anything publish /clock?"
 )

@@ -8,21 +8,13 @@ from ..reducer import Mount
 from ..settings import DiagnosisSettings, JointSettings
 from .limitations import describe_limitation
 from .probability import Probabilities, component_probabilities, name_component
-from .verdict import Component, FaultCode, Level, Verdict
+from .verdict import Component, Level, Verdict
 from .wording import (
     describe_component,
     describe_doubtful_limit,
     describe_doubtful_name,
     describe_relative,
 )
-
-FAULT_CODES = {
-    Component.NONE: FaultCode.OK,
-    Component.FLEXSPLINE: FaultCode.FLEXSPLINE,
-    Component.CIRCULAR_SPLINE: FaultCode.CIRCULAR_SPLINE,
-    Component.BOTH: FaultCode.BOTH_SPLINES,
-    Component.UNDETERMINED: FaultCode.UNDETERMINED,
-}
 
 _SHARP = 0.1  # an index whose standard deviation is below this part of the limit is compared with it directly
 
@@ -111,14 +103,12 @@ class Judge:
         limit = limits.warn_index * (1.0 - limits.hysteresis) if alarmed else limits.warn_index
         component = name_component(evidence.index, limit, limits.both_ratio)
         odds = component_probabilities(evidence, limit, limits.both_ratio)
-        worst = max(zip(evidence.index, evidence.index_std, strict=True))
         sharp = max(evidence.index_std) < _SHARP * limits.warn_index
-        if component is Component.NONE:
-            if sharp or odds.none >= limits.confidence:
-                return self._named(component, Level.OK, evidence)
-            return self._undetermined(describe_doubtful_limit(evidence, limit, worst))
-        if not sharp and 1.0 - odds.none < limits.confidence:
-            return self._undetermined(describe_doubtful_limit(evidence, limit, worst))
+        sound = component is Component.NONE
+        if not sharp and (odds.none if sound else 1.0 - odds.none) < limits.confidence:
+            return self._undetermined(describe_doubtful_limit(evidence, limit))
+        if sound:
+            return self._named(component, Level.OK, evidence)
         level = self._magnitude(evidence)
         if self._contradicted(component, odds):
             return self._undetermined(describe_doubtful_name(evidence, odds), level)
@@ -130,12 +120,7 @@ class Judge:
         odds = component_probabilities(evidence, 0.0, self._limits.both_ratio)
         if self._contradicted(component, odds):
             return self._undetermined(describe_doubtful_name(evidence, odds))
-        return Verdict(
-            component=component,
-            level=Level.OK,
-            fault_code=FAULT_CODES[component],
-            reason=describe_relative(component, evidence),
-        )
+        return Verdict.naming(component, Level.OK, describe_relative(component, evidence))
 
     def _contradicted(self, component: Component, odds: Probabilities) -> bool:
         """Whether a part that should not be named alone could be the one after all, beyond the required confidence."""
@@ -158,16 +143,9 @@ class Judge:
         return Level.WARN if larger >= limits.warn_index * (easier if shown > Level.OK else 1.0) else Level.OK
 
     def _named(self, component: Component, level: Level, evidence: Identification) -> Verdict:
-        reason = describe_component(
-            component, level, evidence, self._limits.warn_index, self._limits.error_index, self._motor_side
-        )
-        return Verdict(component=component, level=level, fault_code=FAULT_CODES[component], reason=reason)
+        reason = describe_component(component, level, evidence, self._limits, self._motor_side)
+        return Verdict.naming(component, level, reason)
 
     @staticmethod
     def _undetermined(reason: str, level: Level = Level.WARN) -> Verdict:
-        return Verdict(
-            component=Component.UNDETERMINED,
-            level=max(level, Level.WARN),
-            fault_code=FaultCode.UNDETERMINED,
-            reason=reason,
-        )
+        return Verdict.naming(Component.UNDETERMINED, max(level, Level.WARN), reason)

@@ -9,7 +9,10 @@ _BOTH_DIRECTIONS = "; ".join(
     f"{{{d}}}: {{{d}_line:.3g}} ± {{{d}_line_std:.1g}} and {{{d}_next_line:.3g}} ± {{{d}_next_line_std:.1g}}"
     for d in ("first", "second")
 )
-
+_WRONG_TORQUE = (
+    "The vibration contradicts the torque given, which seems to be {}: check load.torque or the effort's unit; the "
+    "indexes' scale depends on it"
+)
 _CORRECT_TEETH = (
     "the {given} given; correct reducer.flexspline_teeth and reducer.circular_spline_teeth, since with wrong ones no "
     "part can be named"
@@ -31,14 +34,8 @@ SENTENCES: Mapping[LimitationCode, str] = {
     LimitationCode.VIBRATION_STAMPS_LAG: (
         "the stamps of the vibration lag those of the joint states by {delay_ms:.1f} ms, which is compensated"
     ),
-    LimitationCode.TORQUE_TOO_SMALL: (
-        "The vibration contradicts the torque given, which seems to be larger: check load.torque or the effort's unit; "
-        "the indexes' scale depends on it"
-    ),
-    LimitationCode.TORQUE_TOO_LARGE: (
-        "The vibration contradicts the torque given, which seems to be smaller: check load.torque or the effort's "
-        "unit; the indexes' scale depends on it"
-    ),
+    LimitationCode.TORQUE_TOO_SMALL: _WRONG_TORQUE.format("larger"),
+    LimitationCode.TORQUE_TOO_LARGE: _WRONG_TORQUE.format("smaller"),
     LimitationCode.TORQUE_ABSURD: (
         "A torque of {torque_nm:.3g} N·m would wind the reducer up by {wind_up_deg:.0f}°: check the effort's unit, "
         "dynamics.inertia and dynamics.natural_frequency"

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from enum import IntEnum, StrEnum
+from typing import Self
 
 
 class Component(StrEnum):
@@ -25,6 +26,15 @@ class FaultCode(StrEnum):
     INPUT_LOST = "HD_INPUT_LOST"
     INPUT_INVALID = "HD_INPUT_INVALID"
     INTERNAL_ERROR = "HD_INTERNAL_ERROR"
+
+
+_FAULT_CODES = {
+    Component.NONE: FaultCode.OK,
+    Component.FLEXSPLINE: FaultCode.FLEXSPLINE,
+    Component.CIRCULAR_SPLINE: FaultCode.CIRCULAR_SPLINE,
+    Component.BOTH: FaultCode.BOTH_SPLINES,
+    Component.UNDETERMINED: FaultCode.UNDETERMINED,
+}
 
 
 class Level(IntEnum):
@@ -51,3 +61,8 @@ class Verdict:
     level: Level
     fault_code: FaultCode
     reason: str
+
+    @classmethod
+    def naming(cls, component: Component, level: Level, reason: str) -> Self:
+        """Return the verdict whose fault code says no more than its component."""
+        return cls(component=component, level=level, fault_code=_FAULT_CODES[component], reason=reason)

@@ -3,6 +3,7 @@
 import math
 
 from ..identification.result import Identification
+from ..settings import DiagnosisSettings
 from .limitations import describe_limitation
 from .probability import Probabilities
 from .verdict import Component, Level
@@ -38,8 +39,7 @@ def describe_component(
     component: Component,
     level: Level,
     evidence: Identification,
-    warn_limit: float,
-    error_limit: float,
+    limits: DiagnosisSettings,
     motor_side: Component,
 ) -> str:
     """Say which part is at fault and by how much its index exceeds the limit.
@@ -47,8 +47,10 @@ def describe_component(
     `motor_side` is the spline whose line is exactly twice per wave-generator revolution, as the motor's own ripple is.
     """
     if component is Component.NONE:
-        return _with_doubts(f"Both splines are sound: {_indexes(evidence)}, limit {_percent(warn_limit)}", evidence)
-    limit, word = (error_limit, "defective") if level is Level.ERROR else (warn_limit, "suspect")
+        return _with_doubts(
+            f"Both splines are sound: {_indexes(evidence)}, limit {_percent(limits.warn_index)}", evidence
+        )
+    limit, word = (limits.error_index, "defective") if level is Level.ERROR else (limits.warn_index, "suspect")
     verb = "are" if component is Component.BOTH else "is"
     sentence = (
         f"The {PART_NAMES[component]} {verb} {word}: {_indexes(evidence)}, {level.name.lower()} limit {_percent(limit)}"
@@ -74,9 +76,9 @@ def describe_relative(component: Component, evidence: Identification) -> str:
     )
 
 
-def describe_doubtful_limit(evidence: Identification, limit: float, worst: tuple[float, float]) -> str:
+def describe_doubtful_limit(evidence: Identification, limit: float) -> str:
     """Say that the index may lie on either side of the limit, and what would help."""
-    index, std = worst
+    index, std = max(zip(evidence.index, evidence.index_std, strict=True))
     factor = (std / max(abs(index - limit), 0.1 * limit)) ** 2
     return _with_doubts(
         f"The larger index, {_with_std(index, std)}, is close to the limit of {_percent(limit)}; "

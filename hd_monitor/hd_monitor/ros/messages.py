@@ -13,14 +13,11 @@ from ..diagnosis.status import Status
 from ..orders.rms_curve import SpeedBin
 from ..orders.zoom import ZoomSpectrum
 
-LEVELS = (DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR)
-"""By number; the message needs bytes: it accepts an int too, but serialises it as garbage."""
-
 
 def diagnostic_status(status: Status, name: str) -> DiagnosticStatus:
     """Write a status as a message of the name given."""
     return DiagnosticStatus(
-        level=LEVELS[status.level],
+        level=bytes([status.level]),  # an int is accepted too, but serialised as garbage
         name=name,
         message=status.message,
         hardware_id=status.hardware_id,

@@ -12,11 +12,6 @@ from rclpy.callback_groups import CallbackGroup
 from rclpy.node import Node
 from rclpy.qos import QoSCompatibility, QoSHistoryPolicy, QoSProfile, QoSReliabilityPolicy, qos_check_compatible
 
-RELIABILITIES = {
-    "reliable": QoSReliabilityPolicy.RELIABLE,
-    "best_effort": QoSReliabilityPolicy.BEST_EFFORT,
-}
-
 
 class PolledGroup(CallbackGroup):
     """A callback group whose members no executor waits for."""
@@ -54,7 +49,11 @@ class DrainedSubscription:
         package, _, name = kind.partition("/")
         self._type = getattr(import_module(f"{package}.msg"), name)
         self._depth = depth
-        self._qos = QoSProfile(history=QoSHistoryPolicy.KEEP_LAST, depth=depth, reliability=RELIABILITIES[reliability])
+        self._qos = QoSProfile(
+            history=QoSHistoryPolicy.KEEP_LAST,
+            depth=depth,
+            reliability=QoSReliabilityPolicy.get_from_short_key(reliability),
+        )
         self._subscription = node.create_subscription(
             self._type, topic, _never, self._qos, callback_group=PolledGroup(), raw=True
         )
