@@ -107,8 +107,7 @@ class Evidence:
     def _tangential(self, acceleration: FloatArray) -> FloatArray:
         """Vibration at the sensor's radius [m/s²]; gravity and the arm's own motion removed from an IMU's signal."""
         values = self._radius * acceleration
-        known = np.isfinite(values)
-        if not self._gravity or int(known.sum()) < 2 * _SLOW_DEGREE:
+        if not self._gravity or int((known := np.isfinite(values)).sum()) < 2 * _SLOW_DEGREE:
             return values
         place = np.linspace(-1.0, 1.0, values.size)
         slow = np.polynomial.Legendre.fit(place[known], values[known], _SLOW_DEGREE, domain=[-1.0, 1.0])

@@ -45,12 +45,14 @@ def compare_motion(samples: JointSamples, *, minimum_speed: float, reduction: fl
     steps = angle[1:] - angle[:-1]
     if (wrapped := np.abs(steps) > _WRAPPED).any():
         steps -= math.tau * np.rint(steps / math.tau) * wrapped
-    first = np.flatnonzero(np.diff(np.floor((times[1:] - times[0]) / WINDOW), prepend=-1.0))
-    moved = np.add.reduceat(steps, first)
-    said = np.add.reduceat(0.5 * (speed[1:] + speed[:-1]) * (times[1:] - times[:-1]), first)
+    moved, said = steps, 0.5 * (speed[1:] + speed[:-1]) * (times[1:] - times[:-1])
+    if float(np.linalg.norm(moved - said)) > SLIP * max(float(np.linalg.norm(moved)), float(np.linalg.norm(said))):
+        # Between single messages quantisation and noise differ, too
+        first = np.flatnonzero(np.diff(np.floor((times[1:] - times[0]) / WINDOW), prepend=-1.0))
+        moved, said = np.add.reduceat(moved, first), np.add.reduceat(said, first)
     size_moved, size_said = float(np.linalg.norm(moved)), float(np.linalg.norm(said))
     larger = max(size_moved, size_said)
-    if larger < minimum_speed * WINDOW * math.sqrt(moved.size):
+    if larger < minimum_speed * float(times[-1] - times[0]) / math.sqrt(moved.size):
         return MotionAgreement(False, None)
     difference = float(np.linalg.norm(moved - said)) / larger
     if difference <= SLIP:

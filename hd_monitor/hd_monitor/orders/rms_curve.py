@@ -40,6 +40,10 @@ class RmsAccumulator:
             return
         numbers = np.rint(speed / self._width).astype(np.int64)
         first = int(numbers.min())
+        if first == int(numbers.max()):  # the usual case, at a tenth of the cost
+            own = np.array([float(speed.sum()), float(value @ value), float(speed.size)])
+            self._sums[first] = self._sums.get(first, 0.0) + own
+            return
         place = numbers - first
         sums = np.stack([np.bincount(place, speed), np.bincount(place, value * value), np.bincount(place)], axis=1)
         for offset in np.flatnonzero(sums[:, 2]).tolist():
