@@ -12,7 +12,7 @@ pytestmark = pytest.mark.ros
 
 def test_statuses_come_before_there_is_a_clock(bench: Bench) -> None:
     bench.monitor("use_sim_time:=true", "input.timeout:=0.5")
-    bench.until_status(lambda s: "no simulated time has come yet" in s.message, "a status that misses the clock")
+    bench.until_status(lambda s: "no simulated time has arrived yet" in s.message, "a status that misses the clock")
     bench.forget()
     bench.until(lambda: len(bench.statuses) >= 2, "statuses without a clock")
     assert all(status.fault_code != "HD_INPUT_LOST" for status in bench.statuses)
