@@ -1,5 +1,8 @@
 """Errors that hd_monitor raises on purpose: each message states the value, the consequence and what to do."""
 
+UNUSABLE_INPUT = 2
+"""Exit status for unusable input or parameters, or a package that is not installed."""
+
 
 class HdMonitorError(ValueError):
     """Base of every error that hd_monitor raises on purpose."""

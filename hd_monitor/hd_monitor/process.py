@@ -2,9 +2,6 @@
 
 import os
 
-_THREADS = "OPENBLAS_NUM_THREADS"
-_KEPT = 8_000_000  # bytes; the arrays of a stretch have up to a few millions
-
 
 def set_up_process() -> None:
     """Keep linear algebra on one thread, and freed memory mapped; call it before numpy is imported.
@@ -18,5 +15,5 @@ def set_up_process() -> None:
     The C library of Linux gives back to the system what an array of more than 128 kB occupied, and the next array has
     its pages mapped and cleared again. It stops doing so for sizes of which one has been freed before.
     """
-    os.environ.setdefault(_THREADS, "1")
-    bytes(_KEPT)  # freed at once, and never touched
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    bytes(8_000_000)  # freed at once, and never touched; the arrays of a stretch have up to a few million bytes

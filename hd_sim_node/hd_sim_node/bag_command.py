@@ -12,7 +12,7 @@ from hd_monitor.cli.main import guard
 from hd_monitor.errors import ParameterError
 
 from .defects import CUSTOM, DEFECTS
-from .parameters import NODE_PARAMETERS
+from .parameters import NODE_PARAMETERS, PUBLISHED
 from .programmes import PROGRAMMES
 from .settings import RigSettings, pick
 
@@ -40,7 +40,7 @@ def build_parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--defect", choices=(*DEFECTS, CUSTOM), help="the bad spline")
     parser.add_argument("--programme", choices=tuple(PROGRAMMES), help="what the wave generator does")
-    parser.add_argument("--publish", choices=("block", "samples", "both", "none"), help="form of the vibration")
+    parser.add_argument("--publish", choices=PUBLISHED, help="form of the vibration")
     parser.add_argument("--duration", type=float, metavar="S", help="simulated time; default: the programme once")
     parser.add_argument("--seed", type=int, metavar="N", help="of all random numbers")
     parser.add_argument("--storage", choices=("mcap", "sqlite3"), default="mcap", help="format (default: %(default)s)")

@@ -1,13 +1,11 @@
 """What an IMU on the output link measures: its axes, the rotation and gravity."""
 
 import numpy as np
+from scipy.constants import g as standard_gravity
 
 from hd_monitor.arrays import FloatArray
 
 from .rig import RigChunk, Surroundings
-
-STANDARD_GRAVITY = 9.80665
-"""[m/s²]"""
 
 _AXES = "xyz"
 
@@ -42,10 +40,10 @@ def imu_readings(
     force[:, outward] = -radius * motion.speed**2
     if surroundings.gravity:
         turn = motion.angle - surroundings.gravity_angle
-        force[:, tangential] -= STANDARD_GRAVITY * np.cos(turn)
-        force[:, outward] -= STANDARD_GRAVITY * np.sin(turn)
+        force[:, tangential] -= standard_gravity * np.cos(turn)
+        force[:, outward] -= standard_gravity * np.sin(turn)
     else:
-        force[:, along] = STANDARD_GRAVITY
+        force[:, along] = standard_gravity
     turning[:, along] = motion.speed + motion.velocity
     # Mounted the other way round: rotated by half a turn about the outward axis.
     force[:, [tangential, along]] *= sign

@@ -17,7 +17,8 @@ import numpy as np
 from scipy import stats
 
 from hd_monitor.acquisition.record import JointSamples
-from hd_monitor.diagnosis import Component, Judge
+from hd_monitor.diagnosis.judge import Judge
+from hd_monitor.diagnosis.verdict import Component
 from hd_monitor.identification.result import Identification
 from hd_monitor.identification.sensorless.identifier import SensorlessIdentifier
 from hd_monitor.offline.identify_teeth import rank_tooth_pairs

@@ -8,7 +8,7 @@ from scipy import stats
 from tests.simulated.joints import random_joint, simulate_joint
 from tests.studies.sensorless import PLACEBO_TEETH, UR10E, read_recordings, run, verdict
 
-from hd_monitor.diagnosis import Component
+from hd_monitor.diagnosis.verdict import Component
 from hd_monitor.offline.identify_teeth import rank_tooth_pairs
 from hd_monitor.reducer import LinePair
 from hd_monitor.settings import JointSettings

@@ -22,7 +22,8 @@ from typing import Any
 
 import numpy as np
 
-from hd_monitor.diagnosis import Component, Judge
+from hd_monitor.diagnosis.judge import Judge
+from hd_monitor.diagnosis.verdict import Component
 from hd_monitor.identification.identifier import Identifier
 from hd_monitor.identification.result import Identification
 from hd_monitor.identification.sensorless import identifier as sensorless

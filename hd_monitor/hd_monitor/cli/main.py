@@ -9,12 +9,9 @@ from collections.abc import Callable, Mapping, Sequence
 from importlib.metadata import EntryPoint
 from types import ModuleType
 
-from ..errors import HdMonitorError
+from ..errors import UNUSABLE_INPUT, HdMonitorError
 from ..process import set_up_process
 from . import extensions
-
-UNUSABLE_INPUT = 2
-"""Exit status for unusable input, or a package that is not installed."""
 
 READER_GONE = 128 + signal.SIGPIPE
 """Exit status where the reader of the output has left, as a shell reports it of other commands."""

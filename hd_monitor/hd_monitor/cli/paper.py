@@ -14,8 +14,6 @@ from ..paper.exhibit import Outcome
 from ..paper.reproduction import EXHIBITS, OWN_EXHIBITS, compute
 from ..paper.table import claim_table, fact_table
 
-_WIDEST = 120
-
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the command's arguments."""
@@ -79,8 +77,7 @@ def run(arguments: argparse.Namespace) -> int:
     else:
         cases = load_paper_cases(arguments.params)
         exhibits = compute(EXHIBITS, cases, arguments.only, tell)
-        width = min(shutil.get_terminal_size((100, 24)).columns, _WIDEST)
-        print(claim_table(exhibits, max(width, 60)))
+        print(claim_table(exhibits, min(max(shutil.get_terminal_size((100, 24)).columns, 60), 120)))
         heading = "Torsional vibration of a harmonic driver (Gu et al. 2021), reproduced"
     if arguments.report is not None:
         from ..paper.page import write_report

@@ -9,15 +9,11 @@ from itertools import groupby
 from ..errors import HdMonitorError
 from ..parameter import Parameter
 from ..settings import NODE_PARAMETERS, PARAMETERS
+from ..settings.groups import JOINTS
 from . import extensions
 
 WIDTH = 110
 MONITOR, SIMULATOR = "hd_monitor_node", "hd_sim_node"
-JOINTS = Parameter(
-    name="joints",
-    default="[joint]",
-    description="names of the joints watched; one alone called `joint` takes the only one in joint_states",
-)
 
 HEAD = """\
 # Parameters

@@ -3,14 +3,13 @@
 from .oscillator import Oscillator, Response, gauss_times
 from .parameters import Dynamics, ParametricModel, StiffnessSeries, Torque
 from .stability import growth_rate, scale_defects, stability_chart
-from .steady_state import SteadyState, line_pairs, steady_state
+from .steady_state import line_pairs, steady_state
 
 __all__ = [
     "Dynamics",
     "Oscillator",
     "ParametricModel",
     "Response",
-    "SteadyState",
     "StiffnessSeries",
     "Torque",
     "gauss_times",

@@ -49,16 +49,10 @@ class JointChannel:
         self.watch = JointWatch(joint, settings, now, self._explain)
 
     def _advertise(self, topic: str) -> LifecyclePublisher:
-        qos = QoSProfile(depth=10)
         publisher: LifecyclePublisher = self._node.create_lifecycle_publisher(
-            Float64MultiArray, topic if self._below is None else f"{self._below}/{topic}", qos
+            Float64MultiArray, topic if self._below is None else f"{self._below}/{topic}", QoSProfile(depth=10)
         )
         return publisher
-
-    @property
-    def settings(self) -> JointSettings:
-        """The joint's settings in force."""
-        return self.watch.settings
 
     @property
     def topics(self) -> list[str]:
@@ -69,19 +63,19 @@ class JointChannel:
         """Subscribe to what is the joint's own, `motion` being all joints'; silence counts from `now` [ns]."""
         self._motion = motion
         self._warn_of_short_queue()
-        for quantity, source in self.settings.sources.items():
+        for quantity, source in self.watch.settings.sources.items():
             if quantity is not Quantity.MOTION:
                 self._subscriptions[quantity] = DrainedSubscription(
                     self._node,
                     source.name_below(self._below),
                     source.type,
-                    depth=queue_depth_of(self.settings),
-                    reliability=self.settings.input.reliability,
+                    depth=queue_depth_of(self.watch.settings),
+                    reliability=self.watch.settings.input.reliability,
                 )
         self.watch.wake(now)
 
     def _warn_of_short_queue(self) -> None:
-        rate, seconds = self.settings.input.expected_rate, self.settings.input.queue_seconds
+        rate, seconds = self.watch.settings.input.expected_rate, self.watch.settings.input.queue_seconds
         most = most_messages()
         if rate * seconds > most:
             self._node.get_logger().warning(

@@ -13,10 +13,7 @@ from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
 from rclpy.logging import get_logger
 
-from ..errors import HdMonitorError
-
-UNUSABLE_INPUT = 2
-"""Exit status for parameters with which the node cannot do its work."""
+from ..errors import UNUSABLE_INPUT, HdMonitorError
 
 SUCCESS = TransitionCallbackReturn.SUCCESS
 

@@ -79,7 +79,7 @@ class HdMonitorNode(ManagedNode):
     @logged
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Subscribe, and start looking into the queues."""
-        settings = [channel.settings for channel in self._channels]
+        settings = [channel.watch.settings for channel in self._channels]
         reliable = all(own.input.reliability == "reliable" for own in settings)
         self._motion = DrainedSubscription(
             self,

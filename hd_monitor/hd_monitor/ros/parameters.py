@@ -9,16 +9,10 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter as RosParameter
 
 from ..errors import ParameterError
-from ..parameter import Parameter
 from ..settings import NODE_PARAMETERS, PARAMETERS, JointSettings, set_aside_foreign, split_joints
+from ..settings.groups import JOINTS
 from .declaration import answer, declare
 
-JOINTS = Parameter(
-    name="joints",
-    default="",
-    description="names of the joints watched; with several, each has its topics below its name and may override any "
-    "parameter there (<joint>.reducer.serial); the values at the top level are common to all",
-)
 CHANGEABLE = "diagnosis."
 """Prefix of the parameters that may be changed while the node runs; all others take effect at its start only."""
 

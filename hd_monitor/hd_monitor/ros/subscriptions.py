@@ -55,8 +55,8 @@ class DrainedSubscription:
             reliability=QoSReliabilityPolicy.get_from_short_key(reliability),
         )
         self._subscription = node.create_subscription(
-            self._type, topic, _never, self._qos, callback_group=PolledGroup(), raw=True
-        )
+            self._type, topic, lambda _: None, self._qos, callback_group=PolledGroup(), raw=True
+        )  # rclpy requires a callback; the group keeps it from being called
         self._type_name = f"{package}/msg/{name}"
         self.topic: str = self._subscription.topic_name
 
@@ -105,7 +105,3 @@ class DrainedSubscription:
 
 def _name(endpoint: Any) -> str:
     return f"{endpoint.node_namespace.rstrip('/')}/{endpoint.node_name}"
-
-
-def _never(message: Any) -> None:
-    """Stand in for the callback that a subscription must have; the group keeps it from being called."""

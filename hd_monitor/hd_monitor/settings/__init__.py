@@ -4,10 +4,7 @@ from .groups import (
     NODE_PARAMETERS,
     PARAMETERS,
     ROS_PARAMETERS,
-    AnalysisSettings,
     DiagnosisSettings,
-    InputSettings,
-    LoadSettings,
 )
 from .joint_settings import JointSettings
 from .joints import set_aside_foreign, split_joints
@@ -16,11 +13,8 @@ __all__ = [
     "NODE_PARAMETERS",
     "PARAMETERS",
     "ROS_PARAMETERS",
-    "AnalysisSettings",
     "DiagnosisSettings",
-    "InputSettings",
     "JointSettings",
-    "LoadSettings",
     "set_aside_foreign",
     "split_joints",
 ]

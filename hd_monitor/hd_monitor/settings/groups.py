@@ -4,7 +4,7 @@ import re
 from dataclasses import dataclass
 
 from ..errors import ParameterError
-from ..parameter import choice, number, parameters_of, plain, table
+from ..parameter import Parameter, choice, number, parameters_of, plain, table
 from ..reducer import Mount
 from ..sources import INPUT_SOURCES, LOAD_SOURCES
 
@@ -18,9 +18,7 @@ class InputSettings:
     """The parameters ``input.*``."""
 
     source: str = choice(
-        "block",
-        INPUT_SOURCES,
-        "the vibration signal; joint_effort and joint_velocity need joint_states only",
+        "block", INPUT_SOURCES, "the vibration signal; joint_effort and joint_velocity need joint_states only"
     )
     axis: str = choice("y", AXES, "axis of an IMU's linear acceleration that points along the motion (tangential)")
     sensor_radius: float = number(
@@ -89,9 +87,7 @@ class LoadSettings:
         "joints",
     )
     axis: str = choice(
-        "z",
-        AXES,
-        "axis of the wrench that points along the joint's axis, with the sign that an effort would have",
+        "z", AXES, "axis of the wrench that points along the joint's axis, with the sign that an effort would have"
     )
 
     def __post_init__(self) -> None:
@@ -194,6 +190,12 @@ PARAMETERS = (
 )
 """Parameters of a joint."""
 
+JOINTS = Parameter(
+    name="joints",
+    default="[joint]",
+    description="names of the joints watched; one alone called `joint` takes the only one in joint_states; with "
+    "several, each has its topics below its name and may override any parameter there (`JOINT.reducer.serial`)",
+)
 NODE_PARAMETERS = table(autostart=plain(True, "come up configured and active, without a lifecycle manager"))
 """Parameters of the node as a whole, besides `joints`: they say nothing about any joint."""
 

@@ -34,10 +34,6 @@ def set_aside_foreign(given: Mapping[str, Any]) -> tuple[dict[str, Any], list[st
     return {name: value for name, value in flat.items() if name not in strangers}, strangers
 
 
-def _is_name(joint: object) -> bool:
-    return isinstance(joint, str) and bool(joint)
-
-
 def split_joints(given: Mapping[str, Any]) -> dict[str, JointSettings]:
     """Settings of every joint in a node's parameters.
 
@@ -59,8 +55,8 @@ def split_joints(given: Mapping[str, Any]) -> dict[str, JointSettings]:
     """
     flat = {name: value for name, value in flatten(given).items() if not _is_of_the_node(name)}
     joints = flat.pop("joints", None) or ["joint"]
-    names = isinstance(joints, Sequence) and not isinstance(joints, str) and all(_is_name(joint) for joint in joints)
-    if not names or len(set(joints)) != len(joints):
+    several = isinstance(joints, Sequence) and not isinstance(joints, str)
+    if not several or not all(isinstance(joint, str) and joint for joint in joints) or len(set(joints)) != len(joints):
         raise ParameterError(f"joints = {joints!r} must be a list of different names")
     common = {name: value for name, value in flat.items() if name in _OF_JOINTS}
     rest = {name: value for name, value in flat.items() if name not in _OF_JOINTS}

@@ -17,7 +17,6 @@ from .screen import Screen, View
 
 PATIENCE = 60.0
 """Seconds without progress on /diagnostics after which the demo gives up."""
-FAILED = 1
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -74,10 +73,10 @@ def run(arguments: argparse.Namespace) -> int:
                     children.check()
                     if (view := listen(0.2)) is not None:
                         screen.update(view, 1.0)
-        return 0 if right else FAILED
+        return int(not right)
     except DemoError as error:
         print(f"hd-monitor demo: {error}", file=sys.stderr)
-        return FAILED
+        return 1
     finally:
         signal.signal(signal.SIGTERM, before)
 

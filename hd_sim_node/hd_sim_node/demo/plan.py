@@ -6,7 +6,7 @@ import random
 import socket
 from collections.abc import Sequence
 
-from hd_monitor.diagnosis import name_component
+from hd_monitor.diagnosis.probability import name_component
 from hd_monitor.errors import ParameterError
 from hd_monitor.offline.parameters import parse_override
 from hd_monitor.reducer import LinePair

@@ -1,7 +1,7 @@
 """Runs of the sensorless identification and the verdicts that follow."""
 
 from hd_monitor.acquisition.record import JointSamples
-from hd_monitor.diagnosis import Judge
+from hd_monitor.diagnosis.judge import Judge
 from hd_monitor.identification.sensorless.identifier import SensorlessIdentifier
 from hd_monitor.settings import JointSettings
 

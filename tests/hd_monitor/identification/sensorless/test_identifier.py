@@ -12,8 +12,8 @@ from tests.hd_monitor.identification.sensorless.runs import (
 )
 
 from hd_monitor.acquisition.record import JointSamples
-from hd_monitor.diagnosis import Component
 from hd_monitor.diagnosis.limitations import describe_limitation
+from hd_monitor.diagnosis.verdict import Component
 from hd_monitor.identification.sensorless.identifier import SensorlessIdentifier
 
 

@@ -8,9 +8,9 @@ from tests.hd_monitor.identification.sensorless.runs import (
     settings_of,
 )
 
-from hd_monitor.diagnosis import Component
 from hd_monitor.diagnosis.limitations import describe_limitation
 from hd_monitor.diagnosis.status import status_of
+from hd_monitor.diagnosis.verdict import Component
 from hd_monitor.monitor import Monitor
 from hd_monitor.sources import Quantity
 
