@@ -42,11 +42,6 @@ class IndexChange(NamedTuple):
         """Whether noise alone would hardly make such a difference."""
         return self.p_value < SIGNIFICANT
 
-    @property
-    def matters(self) -> bool:
-        """Whether the difference is significant and large enough to care."""
-        return self.significant and abs(self.change) >= SMALL
-
 
 class Peak(NamedTuple):
     """The highest point of a property curve."""
@@ -178,7 +173,7 @@ def _index_sentence(change: IndexChange) -> str:
     new = percent_with_std(change.after, change.after_std)
     if not change.significant:
         return f"The {name}'s index did not change significantly: {old} before, {new} after (p = {change.p_value:.2g})."
-    if not change.matters:
+    if abs(change.change) < SMALL:
         return f"The {name}'s index hardly changed: {old} before, {new} after."
     verb = "rose" if change.change > 0 else "fell"
     share = f", by {100 * abs(change.change) / change.before:.0f} %" if change.before > SMALL else ""

@@ -8,6 +8,7 @@ from typing import Any
 from ..acquisition.quality import Quality
 from ..assessment import Assessment
 from ..diagnosis.limitations import describe_limitation
+from ..diagnosis.tooth_ranking import ConcludedRanking
 from ..errors import ParameterError
 from ..identification.identifier import Identifier
 from ..identification.result import Identification
@@ -20,7 +21,6 @@ from .identify_teeth import ToothCheck
 from .plan import JointPlan, Request, plan
 from .replay import SomeIdentifier
 from .run import run
-from .tooth_ranking import ConcludedRanking
 
 WHOLE_RECORDING: Mapping[str, Any] = {"analysis.memory": 86_400.0, "dynamics.refine": True}
 """What a parameter file says for watching does not suit identification: nothing fades, and fn and ζ are sought."""
@@ -147,7 +147,7 @@ def _pair_up(joints: dict[str, JointIdentification], plans: Sequence[JointPlan],
 
 def _go_through(bag: Bag, plans: Sequence[JointPlan], joints: Mapping[str, JointIdentification]) -> None:
     """Feed one recording to the identifiers."""
-    checks = {name: joint.tooth_check for name, joint in joints.items()}
+    checks = {name: joint.tooth_check.add for name, joint in joints.items()}
     for result in run(bag, plans, checks, {name: joint.identifier for name, joint in joints.items()}):
         joint = joints[result.plan.joint]
         joint.identifier.finish()  # nothing joins one recording's end to the next one's beginning

@@ -10,13 +10,13 @@ import yaml
 from .. import __version__
 from ..acquisition.quality import Quality
 from ..diagnosis.limitations import describe_limitation
+from ..diagnosis.tooth_ranking import ConcludedRanking
 from ..identification.teeth.candidates import ToothPair
 from . import identify_numbers as numbers
 from .identify import JointIdentification
 from .identify_numbers import Estimate, Harmonic
 from .parameters import NODE
 from .result import line_entries, plain
-from .tooth_ranking import ConcludedRanking
 
 SHOWN = 5
 """Candidate tooth pairs listed."""

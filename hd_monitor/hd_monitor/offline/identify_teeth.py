@@ -9,6 +9,7 @@ import numpy as np
 
 from ..acquisition.record import JointSamples, Record
 from ..assessment import Assessment
+from ..diagnosis.tooth_ranking import ConcludedRanking
 from ..errors import ParameterError
 from ..identification.teeth.candidates import Candidate, ToothPair, every_pair
 from ..identification.teeth.ranking import odds_as_pair, rank
@@ -18,7 +19,6 @@ from ..orders.regression import Products, solve
 from ..orders.scan import OrderScan
 from ..reducer import WAVE_GENERATOR_LOBES
 from ..settings import JointSettings
-from .tooth_ranking import ConcludedRanking
 
 LONGEST = 600.0
 """Motion [s] that the check uses: more would add little, and memory stays flat."""

@@ -26,6 +26,16 @@ _Loader.add_implicit_resolver(
 )
 
 
+def read_yaml(path: Path) -> Any:
+    """Read a YAML file; raise a `ParameterError` of one line if it cannot be read or is not YAML."""
+    try:
+        return yaml.load(path.read_text(encoding="utf-8"), _Loader)
+    except OSError as error:
+        raise ParameterError(f"{path} cannot be read: {error.strerror}; check the path") from None
+    except (yaml.YAMLError, UnicodeDecodeError) as error:
+        raise ParameterError(f"{path} is not valid YAML: {' '.join(str(error).split())}") from None
+
+
 def load_parameters(path: Path, node: str | None = None) -> dict[str, Any]:
     """Read the monitor's parameters from a file.
 
@@ -47,12 +57,7 @@ def load_parameters(path: Path, node: str | None = None) -> dict[str, Any]:
     ParameterError
         If the file cannot be read, is not such YAML, or does not say whose parameters are meant.
     """
-    try:
-        content = yaml.load(path.read_text(encoding="utf-8"), _Loader)
-    except OSError as error:
-        raise ParameterError(f"{path} cannot be read: {error.strerror}; check the path") from None
-    except (yaml.YAMLError, UnicodeDecodeError) as error:
-        raise ParameterError(f"{path} is not valid YAML: {' '.join(str(error).split())}") from None
+    content = read_yaml(path)
     if content is None:
         return {}
     if not isinstance(content, Mapping):

@@ -13,7 +13,6 @@ from .bag import Bag
 from .batches import Window
 from .plan import JointPlan
 
-Progress = Callable[[Window], None]
 SomeIdentifier = Identifier | SensorlessIdentifier
 
 
@@ -59,7 +58,7 @@ class _Channel:
 def replay(
     bag: Bag,
     plans: Sequence[JointPlan],
-    progress: Progress | None = None,
+    progress: Callable[[Window], None] | None = None,
     identifiers: Mapping[str, SomeIdentifier] | None = None,
 ) -> Iterator[Replayed]:
     """Put a recording through one monitor a joint, as fast as the machine allows.

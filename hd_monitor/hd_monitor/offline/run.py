@@ -1,8 +1,8 @@
 """Replay a recording from start to end and collect what was said: what the commands do with a bag."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..assessment import Assessment
 from .bag import Bag
@@ -14,13 +14,6 @@ from .result import JointResult, as_dict
 
 if TYPE_CHECKING:
     from .report.collector import Collector
-
-
-class Listener(Protocol):
-    """Takes the assessments of a joint as they come."""
-
-    def add(self, assessment: Assessment) -> None:
-        """Take the next assessment."""
 
 
 class Outcome(NamedTuple):
@@ -38,7 +31,7 @@ class Outcome(NamedTuple):
 def run(
     bag: Bag,
     plans: Sequence[JointPlan],
-    listeners: Mapping[str, Listener],
+    listeners: Mapping[str, Callable[[Assessment], None]],
     identifiers: Mapping[str, SomeIdentifier] | None = None,
 ) -> list[JointResult]:
     """Replay an open recording, with progress on standard error; `listeners` and `identifiers` are by joint."""
@@ -48,7 +41,7 @@ def run(
         joint = said.plan.joint
         results[joint].add(said)
         if joint in listeners and not said.last:
-            listeners[joint].add(said.assessment)
+            listeners[joint](said.assessment)
     progress.close()
     return list(results.values())
 
@@ -72,7 +65,7 @@ def replay_bag(path: Path, request: Request, *, for_report: bool = False) -> Out
     with Bag(path) as bag:
         plans = plan(bag, request)
         collectors = _collectors(plans) if for_report else {}
-        joints = run(bag, plans, collectors)
+        joints = run(bag, plans, {joint: collector.add for joint, collector in collectors.items()})
         notes = list(bag.notes)
     complaints = [joint.unusable for joint in joints if joint.unusable]
     if len(complaints) == len(joints):

@@ -7,9 +7,6 @@ from ..sources import Quantity, Source
 from .batches import RawTopic
 from .errors import BagError
 
-Labels = Callable[[str], tuple[str, ...]]
-"""Gives the labels of the dimensions of an array topic's first message."""
-
 
 class TopicFinder:
     """Looks up topics as a node with remappings would, in a namespace that nobody needs to name.
@@ -19,7 +16,7 @@ class TopicFinder:
     topics : sequence of RawTopic
         The recording's.
     labels : callable
-        Tells the labels of an array topic's dimensions.
+        Gives the labels of the dimensions of an array topic's first message.
     namespace : str, optional
         Namespace of the node whose inputs are wanted; needed only if several have been recorded.
     remap : mapping of str to str
@@ -29,7 +26,7 @@ class TopicFinder:
     def __init__(
         self,
         topics: Sequence[RawTopic],
-        labels: Labels,
+        labels: Callable[[str], tuple[str, ...]],
         *,
         namespace: str | None = None,
         remap: Mapping[str, str] | None = None,
@@ -73,7 +70,8 @@ class TopicFinder:
     def _find(self, source: Source, name: str) -> str:
         found = self._of_type(source)
         if name in self._remap or self._namespace is not None:
-            exact = self._absolute(self._remap.get(name, name))
+            target, namespace = self._remap.get(name, name), (self._namespace or "").strip("/")
+            exact = target if target.startswith("/") else f"/{namespace}/{target}".replace("//", "/")
             if any(topic.name == exact for topic in found):
                 return exact
             raise BagError(self._missing(source, exact))
@@ -81,7 +79,9 @@ class TopicFinder:
         if (plain := f"/{name.lstrip('/')}") in named:
             return plain
         if not named and "/" not in name.removesuffix(source.topic):
-            named = [topic.name for topic in found if self._speaks(source, topic)]
+            # Under an unexpected name, an array says by its label that it is meant, other types by themselves.
+            any_label = source.type != "std_msgs/Float64MultiArray"
+            named = [topic.name for topic in found if any_label or BLOCK_LABEL in self._labels(topic.name)]
         if len(named) == 1:
             return named[0]
         if named:
@@ -89,14 +89,6 @@ class TopicFinder:
                 f"{', '.join(named)} could all be {name}; choose one with --namespace or --remap {name}:={named[0]}"
             )
         raise BagError(self._missing(source, name))
-
-    def _absolute(self, name: str) -> str:
-        namespace = (self._namespace or "").strip("/")
-        return name if name.startswith("/") else f"/{namespace}/{name}".replace("//", "/")
-
-    def _speaks(self, source: Source, topic: RawTopic) -> bool:
-        """Whether a topic of an unexpected name is meant: an array says so by its label, other types by themselves."""
-        return source.type != "std_msgs/Float64MultiArray" or BLOCK_LABEL in self._labels(topic.name)
 
     def _missing(self, source: Source, name: str) -> str:
         """Say that a topic was not recorded, and what is there instead."""

@@ -176,7 +176,7 @@ def _case(source: str, values: Mapping[str, Any], *, shared: bool = False) -> Ca
         **reader.numbers_below("torque", "load_fluctuation", "load_phase", "drive_fluctuation", "drive_phase"),
     )
     gear = None
-    if reader.has("pitch_error"):
+    if any(name.startswith("pitch_error.") for name in reader.left):
         eccentricity, scatter = (reader.number(f"pitch_error.{name}", 0.0) for name in ("eccentricity", "scatter"))
         gear = PitchErrorCase(
             PitchErrors.of_eccentric_gear(reducer.circular_spline_teeth, eccentricity, scatter=scatter),

@@ -8,10 +8,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MultipleLocator
 
-from .exhibit import Curve, Exhibit, Mark, Panel, Style, Surface
+from .exhibit import Exhibit, Mark, Panel, Style, Surface
 
 _WIDTH, _HEIGHT = 5.6, 3.8  # inches of a panel
-_DPI = 110
 _COLOURS = ("#1f5fa8", "#d1603d", "#3f8f5b", "#8a5aa8", "#7a6a3a", "#4f4f4f")
 _LINES: dict[Style, dict[str, Any]] = {
     "line": {"linestyle": "-", "linewidth": 1.2},
@@ -20,14 +19,13 @@ _LINES: dict[Style, dict[str, Any]] = {
     "points": {"linestyle": "", "marker": "o", "markersize": 3.5},
     "dotted points": {"linestyle": ":", "linewidth": 1.0, "marker": "*", "markersize": 6},
 }
-_PER_ROW = 2
 _MOST_COLUMNS = 4  # of a legend
 
 
 def figure_of(name: str, exhibit: Exhibit) -> Figure:
     """Draw an exhibit's panels side by side, under its name and title."""
     count = len(exhibit.panels)
-    columns = min(count, _PER_ROW)
+    columns = min(count, 2)
     rows = -(-count // columns)
     width = _HEIGHT * 1.15 if all(panel.equal for panel in exhibit.panels) else _WIDTH * (1.25 if count == 1 else 1.0)
     figure = Figure(figsize=(width * columns, _HEIGHT * rows), layout="constrained")
@@ -41,7 +39,7 @@ def figure_of(name: str, exhibit: Exhibit) -> Figure:
 def png(name: str, exhibit: Exhibit) -> bytes:
     """Return the drawing as PNG."""
     buffer = io.BytesIO()
-    figure_of(name, exhibit).savefig(buffer, format="png", dpi=_DPI)
+    figure_of(name, exhibit).savefig(buffer, format="png", dpi=110)
     return buffer.getvalue()
 
 
@@ -55,7 +53,11 @@ def _draw(axes: Axes, panel: Panel, figure: Figure) -> None:
     if panel.surface is not None:
         _draw_surface(axes, panel.surface, figure)
     for number, curve in enumerate(panel.curves):
-        _draw_curve(axes, curve, _COLOURS[number % len(_COLOURS)])
+        colour, label = _COLOURS[number % len(_COLOURS)], curve.label or "_"  # matplotlib's legend leaves out a "_"
+        if curve.style == "stems":
+            axes.vlines(curve.x, 0.0, curve.y, color=colour, label=label, linewidth=6.0, alpha=0.45)
+        else:
+            axes.plot(curve.x, curve.y, color=colour, label=label, **_LINES[curve.style])
     if panel.log_y:
         axes.set_yscale("log")
     if panel.x_range is not None:
@@ -67,7 +69,8 @@ def _draw(axes: Axes, panel: Panel, figure: Figure) -> None:
     if panel.y_range is not None:
         axes.set_ylim(*panel.y_range)
     elif any(mark.axis == "x" for mark in panel.marks) and panel.surface is None:
-        _make_room(axes, log=panel.log_y)
+        low, high = axes.get_ylim()  # leave space for the marks' labels above the curves
+        axes.set_ylim(low, high * (high / low) ** 0.25 if panel.log_y else high + 0.25 * (high - low))
     if panel.equal:
         axes.set_box_aspect(1.0)
     for mark in panel.marks:
@@ -75,14 +78,6 @@ def _draw(axes: Axes, panel: Panel, figure: Figure) -> None:
     if labels := sum(bool(curve.label) for curve in panel.curves):
         columns = min(labels, _MOST_COLUMNS)
         axes.legend(fontsize=8, frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.15), ncols=columns)
-
-
-def _draw_curve(axes: Axes, curve: Curve, colour: str) -> None:
-    label = curve.label or "_"  # matplotlib leaves labels that start so out of the legend
-    if curve.style == "stems":
-        axes.vlines(curve.x, 0.0, curve.y, color=colour, label=label, linewidth=6.0, alpha=0.45)
-    else:
-        axes.plot(curve.x, curve.y, color=colour, label=label, **_LINES[curve.style])
 
 
 def _draw_surface(axes: Axes, surface: Surface, figure: Figure) -> None:
@@ -95,12 +90,6 @@ def _draw_surface(axes: Axes, surface: Surface, figure: Figure) -> None:
     bar.ax.tick_params(labelsize=8)
     if surface.values.min() < 0.0 < surface.values.max():
         axes.contour(*grid, levels=[0.0], colors="black", linewidths=1.4)
-
-
-def _make_room(axes: Axes, *, log: bool) -> None:
-    """Leave space for the marks' labels above the curves."""
-    low, high = axes.get_ylim()
-    axes.set_ylim(low, high * (high / low) ** 0.25 if log else high + 0.25 * (high - low))
 
 
 def _draw_mark(axes: Axes, mark: Mark, *, on_surface: bool) -> None:

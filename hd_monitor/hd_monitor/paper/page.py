@@ -12,23 +12,11 @@ from .table import summary
 PAGE = "index.html"
 
 
-def page(exhibits: Mapping[str, Exhibit], pictures: Mapping[str, bytes], *, heading: str, command: str) -> str:
-    """Fill in the page from exhibits and their PNGs, both by name; `command` is the one that produced it."""
-    environment = Environment(
-        loader=PackageLoader("hd_monitor.paper", "."), autoescape=True, undefined=StrictUndefined, trim_blocks=True
-    )
-    return environment.get_template("page.html.j2").render(
-        heading=heading,
-        command=command,
-        exhibits=exhibits,
-        claims=any(exhibit.claims for exhibit in exhibits.values()),
-        summary=summary(exhibits.values()),
-        pictures={name: base64.b64encode(data).decode("ascii") for name, data in pictures.items()},
-    )
-
-
 def write_report(exhibits: Mapping[str, Exhibit], folder: Path, *, heading: str, command: str) -> Path:
-    """Write the figures as PNG and the page into a folder, created if missing; return the page's path."""
+    """Write the figures as PNG and the page into a folder, created if missing; return the page's path.
+
+    `command` is the one that produced the exhibits.
+    """
     from .drawing import png
 
     folder.mkdir(parents=True, exist_ok=True)
@@ -36,5 +24,16 @@ def write_report(exhibits: Mapping[str, Exhibit], folder: Path, *, heading: str,
     for name, data in pictures.items():
         (folder / f"{name}.png").write_bytes(data)
     path = folder / PAGE
-    path.write_text(page(exhibits, pictures, heading=heading, command=command), encoding="utf-8")
+    environment = Environment(
+        loader=PackageLoader("hd_monitor.paper", "."), autoescape=True, undefined=StrictUndefined, trim_blocks=True
+    )
+    content = environment.get_template("page.html.j2").render(
+        heading=heading,
+        command=command,
+        exhibits=exhibits,
+        claims=any(exhibit.claims for exhibit in exhibits.values()),
+        summary=summary(exhibits.values()),
+        pictures={name: base64.b64encode(data).decode("ascii") for name, data in pictures.items()},
+    )
+    path.write_text(content, encoding="utf-8")
     return path

@@ -5,22 +5,17 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import yaml
 
-from ..errors import HdMonitorError, ParameterError
+from ..errors import ParameterError
+from ..offline.parameters import read_yaml
 from ..parameter import flatten
 
 
 def read_file(path: Path) -> dict[str, Any]:
     """Read a YAML file with named values; refuse anything else in one line."""
-    try:
-        content = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise HdMonitorError(f"{path} cannot be read: {error.strerror}; check the path") from None
-    except (yaml.YAMLError, UnicodeDecodeError) as error:
-        raise HdMonitorError(f"{path} is not valid YAML: {' '.join(str(error).split())}") from None
+    content = read_yaml(path)
     if not isinstance(content, Mapping):
-        raise HdMonitorError(f"{path} holds no named values; see config/my_reducer.yaml for an example")
+        raise ParameterError(f"{path} holds no named values; see config/my_reducer.yaml for an example")
     return dict(content)
 
 
@@ -63,7 +58,3 @@ class Reader:
                 f"stop must not be below start, and {last} must be above 0"
             )
         return start, stop, step
-
-    def has(self, prefix: str) -> bool:
-        """Whether something below `prefix` is left."""
-        return any(name.startswith(f"{prefix}.") for name in self.left)

@@ -14,9 +14,6 @@ from .records import line_heights, steady_record
 from .speed_figures import PropertyCurve, curve_panel, property_curve
 from .stiffness_figures import ANGLE_LABEL, static_measurement, static_panel
 
-HALF_TOLERANCE = 0.1
-"""“One half” is taken as 0.5 ± this."""
-
 MICROMETRES = 1e6
 
 _TITLES = ("Original circular spline", "New circular spline")
@@ -29,7 +26,8 @@ def _gear(case: Case) -> PitchErrorCase:
 
 
 def _is_half(ratio: float) -> bool:
-    return abs(ratio - 0.5) <= HALF_TOLERANCE
+    """Whether a ratio is “one half” as the paper means it, taken as 0.5 ± 0.1."""
+    return abs(ratio - 0.5) <= 0.1
 
 
 def _figure_18(title: str, case: Case, curve: PropertyCurve, top: float, *claims: Claim) -> Exhibit:

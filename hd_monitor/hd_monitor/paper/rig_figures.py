@@ -90,10 +90,7 @@ def figure_13a(cases: Cases) -> Exhibit:
 
 
 def _spectrum(case: Case, title: str, label: printed.Printed, multiple: int, pairs: int, *claims: Claim) -> Exhibit:
-    """Show the spectrum of the sensor's signal up to some pair, and find the dominant pair's k.
-
-    The paper's label of the dominant component counts `multiple` cycles of the shaft.
-    """
+    """Show the spectrum up to some pair and the dominant pair's k; the paper's label counts `multiple` shaft cycles."""
     record = steady_record(case.model, case.speed)
     frequencies, amplitudes = spectrum(record.acceleration, record.rate)
     dominant = float(frequencies[amplitudes.argmax()])

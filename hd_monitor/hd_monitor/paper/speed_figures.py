@@ -13,7 +13,6 @@ from .cases import Case, Cases
 from .exhibit import Claim, Curve, Exhibit, Mark, Panel, Surface
 from .records import steady_record
 
-_THRESHOLD_ACCURACY = 1.5e-4  # of β
 _RESONANCES = {"fn/3": 1 / 3, "fn/2": 0.5, "fn": 1.0, "2 fn": 2.0}  # multiples of fn
 
 
@@ -154,7 +153,7 @@ def figure_16(cases: Cases) -> Exhibit:
 
 
 def principal_threshold(model: ParametricModel) -> float:
-    """Smallest β of a single flexspline harmonic whose principal tongue is unstable, by bisection of the growth rate.
+    """Smallest β of a single flexspline harmonic whose principal tongue is unstable, by bisection to 1.5e-4.
 
     Other harmonics of the model are left out; the search runs along the tongue's middle, ωo1 = 2ωn.
     """
@@ -165,7 +164,7 @@ def principal_threshold(model: ParametricModel) -> float:
         trial = replace(model, flexspline=StiffnessSeries((beta,)), circular_spline=StiffnessSeries())
         return max(growth_rate(trial, float(n)) for n in near)
 
-    return float(bisect(growth, 0.0, 1.0, xtol=_THRESHOLD_ACCURACY))
+    return float(bisect(growth, 0.0, 1.0, xtol=1.5e-4))
 
 
 def stability_over_speed(case: Case) -> Exhibit:

@@ -13,9 +13,6 @@ from .cases import Case, Cases
 from .exhibit import Claim, Curve, Exhibit, Mark, Panel
 from .records import sampling_rate
 
-INSTABILITY_BAND = (103.0 / 55.0, 120.0 / 55.0)
-"""Search range of the principal instability's peak: ωo2/2π as multiples of fn, around 2."""
-
 _PEAKS = {"1/2 harmonic resonance": (0.46, 0.54), "resonance": (0.9, 1.1), "instability": (1.85, 2.15)}
 """The convex peaks of figure 10, and where each is searched for: ωo2/2π as multiples of fn."""
 
@@ -53,8 +50,8 @@ class SweepResponse(NamedTuple):
 
     @property
     def instability_peak(self) -> float:
-        """Largest value around ωo2 = 2ωn [rad]."""
-        return self.peak(*INSTABILITY_BAND)[0]
+        """Largest value around ωo2 = 2ωn [rad]: from 103 to 120 Hz where fn is 55 Hz."""
+        return self.peak(103.0 / 55.0, 120.0 / 55.0)[0]
 
 
 def sweep_response(case: Case, rate: float | None = None) -> SweepResponse:

@@ -41,11 +41,7 @@ class ConcludedRanking(ToothPairRanking):
         return f"{self.ranked[0].teeth} teeth fit best, {odds}; the mount does not show in the lines"
 
     def _ambiguity(self) -> str | None:
-        """Why the ranking is not conclusive; None if it is.
-
-        It is if both of the first pair's lines stand out, as two and not one, and it leads by odds of at least 1000
-        to 1, over motion at more than one speed, and it is not where an encoder's errors lie.
-        """
+        """Why the ranking is not conclusive; None if two lines of a clear leader stand out, clear of other causes."""
         best, travel = self.ranked[0], f"{math.degrees(self.travel):.0f}° of travel"
         if not math.isfinite(best.log_evidence):
             return (
