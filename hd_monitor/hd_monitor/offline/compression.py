@@ -1,6 +1,6 @@
 """Decompression of files, chunks and messages: Zstandard and LZ4."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -53,7 +53,7 @@ def decompress(kind: str, data: bytes, *, whole: bool = True) -> bytes:
     return b"".join(_parts(kind, [data])) if whole else bytes(_decompressor(kind).decompress(data))
 
 
-def decompress_where_packed(messages: Iterable[bytes]) -> NDArray[np.object_]:
+def decompress_where_packed(messages: Sequence[bytes] | NDArray[np.object_]) -> NDArray[np.object_]:
     """Return messages, shape (messages,), those that are compressed decompressed; their first bytes say so.
 
     Raises
@@ -61,8 +61,9 @@ def decompress_where_packed(messages: Iterable[bytes]) -> NDArray[np.object_]:
     Exception
         As `decompress`.
     """
-    plain = [decompress("zstd", message) if message.startswith(MAGIC) else message for message in messages]
-    return np.array(plain, dtype=np.object_)
+    if MAGIC in {message[: len(MAGIC)] for message in messages}:
+        messages = [decompress("zstd", message) if message.startswith(MAGIC) else message for message in messages]
+    return np.asarray(messages, dtype=np.object_)
 
 
 def decompress_file(source: Path, target: Path) -> None:
