@@ -4,9 +4,9 @@ The flow, with a vibration sensor::
 
     records ─ segment/ ─► Segment: contiguous motion with its vibration, torque and integration grid
             ─ fit/ ─────► Fit: values of the unknowns, their covariance, and why the steps ended
-            ─ checks/ ──► what is left at the lines, what the motion covers, what contradicts what was given
+            ─ checks/ ──► what is left at the lines, what the motion covers
             ─ teeth/ ───► whether other tooth numbers explain the motion better
-            ─ with_sensor/ ► State, replaced by ``Estimator.update(state, records)``; it holds the result
+            ─ with_sensor/ ► State, replaced by ``Estimator.update(state, records)``; it holds the result and its limits
 
 Without a sensor ``sensorless/`` pools segments of joint states by direction; both end in an `Identification`, which
 holds numbers and codes only. The sentences for people are in :mod:`hd_monitor.diagnosis`.

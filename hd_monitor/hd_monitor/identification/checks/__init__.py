@@ -1,1 +1,1 @@
-"""What a fit leaves unexplained, what the evidence covers, and what limits it: codes and numbers, no prose."""
+"""What a fit leaves unexplained, and what the evidence covers."""

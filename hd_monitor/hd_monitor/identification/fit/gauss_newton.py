@@ -77,6 +77,14 @@ class Fit:
             floor = floor.updated(item.segment, item.residual, item.leverage(self.covariance))
         return floor
 
+    @property
+    def signal_to_noise(self) -> float:
+        """Power of the predicted vibration over that of the residual [dB], in the band that was fitted."""
+        predicted = (s.segment.transform(s.linearisation.predicted[:, None]) for s in self.segments)
+        explained = sum(float(np.sum(signal**2)) for signal in predicted)
+        residual = sum(float(np.sum(s.residual**2)) for s in self.segments)
+        return 10.0 * math.log10(max(explained, 1e-300) / max(residual, 1e-300))
+
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Problem:

@@ -1,21 +1,18 @@
 """From the state of an estimation to the result that diagnosis reads."""
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 
 from ...arrays import FloatArray
 from ...model.parameters import ParametricModel, StiffnessSeries, Torque
-from ..checks.limitations import FitSummary, limitations_of
 from ..checks.residual import LineResidual
 from ..fit.gauss_newton import Fit
 from ..fit.indexes import stiffness_indexes
-from ..fit.normal_equations import LinearisedSegment
-from ..fit.score_test import score_tests
 from ..fit.unknowns import Unknowns
 from ..result import Identification
 from .context import Context
+from .limitations import limitations_of
 from .line_amplitudes import measure_lines
 from .state import State
 
@@ -27,31 +24,15 @@ def conclude(context: Context, state: State, fit: Fit) -> Identification:
     """Pack the result of a state whose newest fit is given."""
     u, reducer, residual, coverage = context.unknowns, context.settings.reducer, state.residual, state.coverage
     assert state.floor is not None
-    predictor, values, information = context.predictor(state.setup), fit.values, context.known(state)
-    inflation = max(residual.inflation(coverage.span), residual.overdispersion.inflation)
-    noise = inflation * information.covariance(state.active)
+    values, information, unit = fit.values, context.known(state), state.setup.reference_torque
+    noise = state.inflation * information.covariance(state.active)
     systematic = _systematic(u, values, residual, coverage.span)
     covariance = noise + systematic
     indexes = stiffness_indexes(u, values, noise, systematic)
-    dynamics = u.dynamics(predictor.given, values)
+    dynamics = u.dynamics(context.given, values)
     loads = u.phasors(values, u.load)
     strongest = int(np.argmax(np.abs(loads)))
     load_std = math.sqrt(covariance[u.load, u.load].diagonal().reshape(2, -1).sum(axis=0)[strongest] / 2.0)
-    relative = state.setup.nominal_torque is not None
-    questioned = (u.frequency, u.damping, u.torque, u.delay)
-    summary = FitSummary(
-        predictor=predictor,
-        fit=fit,
-        active=state.active,
-        indexes=indexes,
-        score_tests=score_tests(questioned, information, values, state.active, u.given_std()),
-        inflation=inflation,
-        unexplained=residual.unexplained,
-        highest_frequency=state.recent[-1].raw_highest,
-        coverage=coverage,
-        signal_to_noise=_signal_to_noise(fit.segments),
-        relative=relative,
-    )
     circular_spline, flexspline = u.phasors(values, u.circular_spline), u.phasors(values, u.flexspline)
     model = ParametricModel(
         reducer=reducer,
@@ -66,23 +47,23 @@ def conclude(context: Context, state: State, fit: Fit) -> Identification:
         index=indexes.index,
         index_std=indexes.std,
         index_correlation=indexes.correlation,
-        relative=relative,
+        relative=state.relative,
         lines=measure_lines(state.recent, reducer, u.harmonics, state.floor),
         travel=coverage.span,
         samples=coverage.samples,
-        signal_to_noise=summary.signal_to_noise,
+        signal_to_noise=fit.signal_to_noise,
         misfit=residual.misfit,
         natural_frequency=dynamics.natural_frequency,
         natural_frequency_std=dynamics.natural_frequency * math.sqrt(covariance[u.frequency, u.frequency]),
         damping_ratio=dynamics.damping_ratio,
         damping_ratio_std=dynamics.damping_ratio * math.sqrt(covariance[u.damping, u.damping]),
-        load_fluctuation=predictor.reference_torque * float(abs(loads[strongest])),
-        load_fluctuation_std=predictor.reference_torque * load_std,
-        model=None if relative else model,
+        load_fluctuation=unit * float(abs(loads[strongest])),
+        load_fluctuation_std=unit * load_std,
+        model=None if state.relative else model,
         fit_status=fit.status,
         limitations=(
             *([state.teeth.doubt] if state.teeth.doubt else []),
-            *limitations_of(summary, reducer, context.settings.diagnosis.warn_index),
+            *limitations_of(context, state, fit, indexes),
         ),
         beta_covariance=np.stack([_of_phasors(covariance, part) for part in (u.circular_spline, u.flexspline)]),
     )
@@ -104,10 +85,3 @@ def _of_phasors(covariance: FloatArray, part: slice) -> FloatArray:
     own = covariance[part, part]
     size = own.shape[0] // 2
     return np.asarray(np.einsum("akbk->kab", own.reshape(2, size, 2, size)))
-
-
-def _signal_to_noise(segments: Sequence[LinearisedSegment]) -> float:
-    """Power of the predicted vibration over that of the residual [dB], in the band that was fitted."""
-    explained = sum(float(np.sum(s.segment.transform(s.linearisation.predicted[:, None]) ** 2)) for s in segments)
-    residual = sum(float(np.sum(s.residual**2)) for s in segments)
-    return 10.0 * math.log10(max(explained, 1e-300) / max(residual, 1e-300))

@@ -10,7 +10,6 @@ from ...arrays import FloatArray
 from ...errors import HdMonitorError
 from ...limitation import LimitationCode, blocker
 from ...settings import JointSettings
-from ..checks.limitations import CONTRADICTION
 from ..fit.gauss_newton import Fit
 from ..fit.multistart import multistart_newest
 from ..fit.score_test import score_tests
@@ -18,6 +17,7 @@ from ..teeth.trial import ToothTrial
 from ..teeth.watch import ToothWatch
 from .conclusion import conclude
 from .context import Context, Unexplained
+from .limitations import CONTRADICTION
 from .schedule import POOR, SECOND_LOOK
 from .search import look_elsewhere, restart, turn_sensor
 from .state import WINDOW, State

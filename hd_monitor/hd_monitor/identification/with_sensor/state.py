@@ -94,6 +94,16 @@ class State:
         """Motion used [s]."""
         return self.coverage.time
 
+    @property
+    def relative(self) -> bool:
+        """Whether the torque is unknown: the scale of the indexes then is, too."""
+        return self.setup.nominal_torque is not None
+
+    @property
+    def inflation(self) -> float:
+        """Factor on the variances by which the model's misfit widens them."""
+        return max(self.residual.inflation(self.coverage.span), self.residual.overdispersion.inflation)
+
     def with_segment(self, segment: Segment, setup: Setup) -> "State":
         """Return the state with a further segment, still to be fitted."""
         recent = (*self.recent, segment)

@@ -2,19 +2,16 @@
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import BoolArray, FloatArray
 from ...limitation import Limitation, LimitationCode, blocker, doubt
-from ...reducer import Reducer
 from ..fit.gauss_newton import Fit, FitStatus
 from ..fit.indexes import Indexes
-from ..fit.linearisation import Predictor
-from ..fit.score_test import ScoreTest
-from ..fit.unknowns import TORQUE_LINES, Unknowns
-from .coverage import Coverage
+from ..fit.score_test import ScoreTest, score_tests
+from ..fit.unknowns import TORQUE_LINES
+from .context import Context
+from .state import State
 
 LEAST_TRAVEL = math.radians(85.0)
 """Output travel [rad] below which no part is named: half of what separates the lines by Fourier means, and less."""
@@ -39,96 +36,43 @@ _CORRECTED_DELAY = 1e-3  # s
 _BELIEVED_FREQUENCY = 0.3  # of ln fn, beyond which a first-order estimate of it means nothing
 
 
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class FitSummary:
-    """A fit as the checks see it.
-
-    Attributes
-    ----------
-    predictor : Predictor
-    fit : Fit
-    active : ndarray of bool, shape (unknowns,)
-        Unknowns that were fitted.
-    indexes : Indexes
-    score_tests : mapping of int to ScoreTest
-        What the data alone say of natural frequency, damping, torque and delay.
-    inflation : float
-        Factor on the variances by which the model's misfit widened them.
-    unexplained : float
-        Amplitude of what the model leaves at the lines over that of what it explains.
-    highest_frequency : float
-        [Hz] that the sensor's rate shows.
-    coverage : Coverage
-    signal_to_noise : float
-        [dB]
-    relative : bool
-        Whether the torque is unknown.
-    """
-
-    predictor: Predictor
-    fit: Fit
-    active: BoolArray
-    indexes: Indexes
-    score_tests: Mapping[int, ScoreTest]
-    inflation: float
-    unexplained: float
-    highest_frequency: float
-    coverage: Coverage
-    signal_to_noise: float
-    relative: bool
-
-    @property
-    def values(self) -> FloatArray:
-        """Best values of the unknowns, shape (unknowns,)."""
-        return self.fit.values
-
-    @property
-    def unknowns(self) -> Unknowns:
-        """Layout of the values."""
-        return self.predictor.unknowns
-
-
-def limitations_of(fit: FitSummary, reducer: Reducer, warn_index: float) -> tuple[Limitation, ...]:
-    """Return what limits a fit, the most serious first among those that forbid naming a part.
-
-    Parameters
-    ----------
-    fit : FitSummary
-    reducer : Reducer
-    warn_index : float
-        ``diagnosis.warn_index``, the smallest index that matters.
-    """
-    found = [*_contradictions(fit), *_other_parts(fit)]
-    if fit.inflation > _WIDENED:
-        if fit.unexplained > _UNEXPLAINED:
-            found.append(blocker(LimitationCode.LINES_UNEXPLAINED, unexplained_percent=100.0 * fit.unexplained))
+def limitations_of(context: Context, state: State, fit: Fit, indexes: Indexes) -> tuple[Limitation, ...]:
+    """Return what limits a state's newest fit, the most serious first among those that forbid naming a part."""
+    u = context.unknowns
+    questioned = (u.frequency, u.damping, u.torque, u.delay)
+    tests = score_tests(questioned, context.known(state), fit.values, state.active, u.given_std())
+    found = [*_contradictions(context, state, fit, tests), *_other_parts(context, state, fit)]
+    if state.inflation > _WIDENED:
+        if state.residual.unexplained > _UNEXPLAINED:
+            percent = 100.0 * state.residual.unexplained
+            found.append(blocker(LimitationCode.LINES_UNEXPLAINED, unexplained_percent=percent))
         else:
-            found.append(doubt(LimitationCode.UNCERTAINTY_WIDENED, factor=math.sqrt(fit.inflation)))
-    missing = _out_of_band(fit, reducer) or _missing(fit, reducer, warn_index)
-    if missing is None and _is_fragile(fit, warn_index):
-        missing = blocker(LimitationCode.NEAR_RESONANCE, given_hz=fit.predictor.given.natural_frequency)
+            found.append(doubt(LimitationCode.UNCERTAINTY_WIDENED, factor=math.sqrt(state.inflation)))
+    missing = _out_of_band(context, state) or _missing(context, state, fit, indexes)
+    if missing is None and _is_fragile(context, state, fit, indexes, tests):
+        missing = blocker(LimitationCode.NEAR_RESONANCE, given_hz=context.given.natural_frequency)
     return (*found, missing) if missing is not None else tuple(found)
 
 
-def _out_of_band(fit: FitSummary, reducer: Reducer) -> Limitation | None:
+def _out_of_band(context: Context, state: State) -> Limitation | None:
     """Return what the sensor's rate hides, or a torque that no reducer withstands."""
-    given, rate = fit.predictor.given, 2.0 * fit.highest_frequency
-    band = _BAND * fit.highest_frequency
+    given, highest = context.given, state.recent[-1].raw_highest
+    rate, band = 2.0 * highest, _BAND * highest
     if given.natural_frequency > band:
         return blocker(LimitationCode.NATURAL_FREQUENCY_BEYOND_RATE, given_hz=given.natural_frequency, rate_hz=rate)
-    torque = fit.predictor.reference_torque
-    if torque > _WIND_UP * given.stiffness and not fit.relative:
+    torque = state.setup.reference_torque
+    if torque > _WIND_UP * given.stiffness and not state.relative:
         wind_up = math.degrees(torque / given.stiffness)
         return blocker(LimitationCode.TORQUE_ABSURD, torque_nm=torque, wind_up_deg=wind_up)
-    rpm = _mean_rpm(fit, reducer)
-    if reducer.line_frequencies(rpm).flexspline > band:
+    rpm = _mean_rpm(context, state)
+    if context.settings.reducer.line_frequencies(rpm).flexspline > band:
         return blocker(LimitationCode.LINES_BEYOND_RATE, speed_rpm=rpm, rate_hz=rate)
     return None
 
 
-def _missing(fit: FitSummary, reducer: Reducer, warn_index: float) -> Limitation | None:
+def _missing(context: Context, state: State, fit: Fit, indexes: Indexes) -> Limitation | None:
     """Return what motion or signal is missing before anything can be named."""
-    coverage = fit.coverage
+    coverage, warn_index = state.coverage, context.settings.diagnosis.warn_index
     if coverage.span < LEAST_TRAVEL:
         travel, needed = math.degrees(coverage.span), math.degrees(LEAST_TRAVEL)
         return blocker(
@@ -139,29 +83,29 @@ def _missing(fit: FitSummary, reducer: Reducer, warn_index: float) -> Limitation
         )
     if coverage.time < LEAST_MOTION:
         return blocker(LimitationCode.MOTION_TOO_SHORT, motion_s=coverage.time, needed_s=LEAST_MOTION)
-    scale = max(warn_index, *fit.indexes.index) if fit.relative else warn_index
-    if min(fit.indexes.std) <= _VAGUE * scale:
+    scale = max(warn_index, *indexes.index) if state.relative else warn_index
+    if min(indexes.std) <= _VAGUE * scale:
         return None
     return blocker(
         LimitationCode.LINES_TOO_WEAK,
-        speed_rpm=_mean_rpm(fit, reducer),
+        speed_rpm=_mean_rpm(context, state),
         signal_to_noise_db=fit.signal_to_noise,
     )
 
 
-def _mean_rpm(fit: FitSummary, reducer: Reducer) -> float:
-    return fit.coverage.mean_speed * reducer.reduction * 60.0 / math.tau
+def _mean_rpm(context: Context, state: State) -> float:
+    return state.coverage.mean_speed * context.settings.reducer.reduction * 60.0 / math.tau
 
 
-def _contradictions(fit: FitSummary) -> Iterator[Limitation]:
+def _contradictions(context: Context, state: State, fit: Fit, tests: Mapping[int, ScoreTest]) -> Iterator[Limitation]:
     """Yield where the data contradict what was given."""
-    u, given, values, tests = fit.unknowns, fit.predictor.given, fit.values, fit.score_tests
+    u, given, values, active = context.unknowns, context.given, fit.values, state.active
     names = {u.frequency: "natural frequency", u.damping: "damping ratio", u.torque: "torque", u.delay: "clock offset"}
-    bound = {place for place in names if fit.active[place] and abs(values[place]) >= u.bounds()[place]}
-    if fit.fit.status is FitStatus.ON_BOUND:
+    bound = {place for place in names if active[place] and abs(values[place]) >= u.bounds()[place]}
+    if fit.status is FitStatus.ON_BOUND:
         yield doubt(LimitationCode.VALUE_ON_BOUND, names=" and ".join(names[place] for place in sorted(bound)))
     frequency, test = given.natural_frequency, tests[u.frequency]
-    if fit.active[u.frequency]:
+    if active[u.frequency]:
         if abs(values[u.frequency]) > _CORRECTED_FREQUENCY and u.frequency not in bound:
             fitted = frequency * math.exp(values[u.frequency])
             yield doubt(LimitationCode.NATURAL_FREQUENCY_CORRECTED, fitted_hz=fitted, given_hz=frequency)
@@ -170,39 +114,39 @@ def _contradictions(fit: FitSummary) -> Iterator[Limitation]:
         yield blocker(
             LimitationCode.NATURAL_FREQUENCY_CONTRADICTED, fitted_hz=frequency * math.exp(shift), given_hz=frequency
         )
-    if fit.active[u.damping] and abs(values[u.damping]) > _CORRECTED_DAMPING and u.damping not in bound:
+    if active[u.damping] and abs(values[u.damping]) > _CORRECTED_DAMPING and u.damping not in bound:
         damping = given.damping_ratio
         yield doubt(LimitationCode.DAMPING_CORRECTED, fitted=damping * math.exp(values[u.damping]), given=damping)
-    if fit.active[u.delay] and abs(values[u.delay]) > _CORRECTED_DELAY and u.delay not in bound:
+    if active[u.delay] and abs(values[u.delay]) > _CORRECTED_DELAY and u.delay not in bound:
         motion_lags = values[u.delay] > 0.0
         code = LimitationCode.MOTION_STAMPS_LAG if motion_lags else LimitationCode.VIBRATION_STAMPS_LAG
         yield doubt(code, delay_ms=1e3 * abs(float(values[u.delay])))
     test = tests[u.torque]
-    if not fit.relative and test.significance > CONTRADICTION and abs(test.value) > _CORRECTED_TORQUE:
+    if not state.relative and test.significance > CONTRADICTION and abs(test.value) > _CORRECTED_TORQUE:
         yield blocker(LimitationCode.TORQUE_TOO_SMALL if test.value > 0.0 else LimitationCode.TORQUE_TOO_LARGE)
 
 
-def _other_parts(fit: FitSummary) -> Iterator[Limitation]:
+def _other_parts(context: Context, state: State, fit: Fit) -> Iterator[Limitation]:
     """Yield the parts besides the splines whose lines stand out."""
-    u, unit = fit.unknowns, fit.predictor.reference_torque
+    u, unit = context.unknowns, state.setup.reference_torque
     for order in u.load_orders:
         if part := TORQUE_LINES.get(order):
             place = u.load_line(order)
             size = float(np.linalg.norm(fit.values[place]))
-            std = math.sqrt(fit.inflation * float(np.mean(fit.fit.covariance[place, place])))
+            std = math.sqrt(state.inflation * float(np.mean(fit.covariance[place, place])))
             if size > CONTRADICTION * std:
                 yield doubt(LimitationCode.OTHER_PART, part=part, order=order, torque_nm=unit * size, std_nm=unit * std)
 
 
-def _is_fragile(fit: FitSummary, warn_index: float) -> bool:
+def _is_fragile(context: Context, state: State, fit: Fit, indexes: Indexes, tests: Mapping[int, ScoreTest]) -> bool:
     """Whether an error in natural frequency or damping, unseen by the data, could change the name."""
-    u, index = fit.unknowns, fit.indexes.index
-    if min(index) <= 0.0 or (max(index) < warn_index and not fit.relative):
+    u, index = context.unknowns, indexes.index
+    if min(index) <= 0.0 or (max(index) < context.settings.diagnosis.warn_index and not state.relative):
         return False
     shift = 0.0
     for place, trusted in ((u.frequency, TRUSTED_FREQUENCY), (u.damping, TRUSTED_DAMPING)):
-        if not fit.active[place]:
-            test = fit.score_tests[place]
+        if not state.active[place]:
+            test = tests[place]
             error = 1.0 / math.sqrt(1.0 / trusted**2 + 1.0 / test.std**2)
             # change of the logarithm of each spline's index per unit of the unknown
             slopes = [
