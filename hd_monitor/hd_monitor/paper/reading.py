@@ -52,9 +52,9 @@ class Reader:
         """Take start, stop and the step or rate named `last`, refused if empty or endless; given are the defaults."""
         start, stop = self.number(f"{name}.start", start), self.number(f"{name}.stop", stop)
         step = self.number(f"{name}.{last}", step)
-        if not (start <= stop and step > 0.0):
+        if not (start < stop and step > 0.0):
             raise ParameterError(
                 f"{self.source}: {name} from {start:g} to {stop:g} by {step:g} is empty or endless; "
-                f"stop must not be below start, and {last} must be above 0"
+                f"stop must be above start, and {last} must be above 0"
             )
         return start, stop, step

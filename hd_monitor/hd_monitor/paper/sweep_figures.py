@@ -74,7 +74,7 @@ def sweep_response(case: Case, rate: float | None = None) -> SweepResponse:
 def envelope(case: Case) -> Exhibit:
     """Envelope of the response to the case's sweep."""
     model, sweep, response = case.model, case.sweep, sweep_response(case)
-    betas = f"β1 = {model.flexspline.index:g}, β2 = {model.circular_spline.index:g}"
+    betas = f"β1 = {model.flexspline.index:.3g}, β2 = {model.circular_spline.index:.3g}"
     damped = f"{betas}, ζ = {model.dynamics.damping_ratio:g}"
     fn = model.dynamics.natural_frequency
     marks = [(0.5, "fn/2"), (1.0, "fn"), (2.0, "2 fn")]

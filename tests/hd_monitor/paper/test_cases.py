@@ -89,6 +89,7 @@ def test_the_example_is_usable():
         ("speed: .nan", "not a finite number"),
         ("torque: {load_fluctuation: yes}", "not a finite number"),
         ("speeds: {start: 300, stop: 200, step: 10}", "is empty or endless"),
+        ("speeds: {start: 300, stop: 300, step: 10}", "stop must be above start"),
         ("sweep: {start: 1, stop: 10, rate: 0}", "is empty or endless"),
         ("circular_spline: {beta: [0.1]}\npitch_error: {eccentricity: 1.0e-5}", "not both"),
         ("- a\n- b", "holds no named values"),
