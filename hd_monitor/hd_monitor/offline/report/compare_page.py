@@ -20,7 +20,7 @@ _NAMES = ("property_curves", "indexes")
 def write_comparison(folder: Path, content: Mapping[str, Any], changes: Sequence[JointChange]) -> Path:
     """Write the page of a comparison, whose JSON is `content`, as `write_page` does."""
     sections = [{"joint": change.joint, "change": change, "pictures": _pictures(change)} for change in changes]
-    return write_page(folder, "comparison.html.j2", content, sections, _NAMES)
+    return write_page(folder, "offline/report/comparison.html.j2", content, sections, _NAMES)
 
 
 def _pictures(change: JointChange) -> dict[str, bytes]:

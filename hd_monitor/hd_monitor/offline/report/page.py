@@ -34,13 +34,26 @@ def write_report(
                 "motion_seconds": collector.motion_seconds,
             }
         )
-    return write_page(folder, "report.html.j2", content, sections, PICTURE_NAMES)
+    return write_page(folder, "offline/report/report.html.j2", content, sections, PICTURE_NAMES)
+
+
+def render(template: str, **values: Any) -> str:
+    """Fill in one of the package's page templates, given by its path."""
+    environment = Environment(
+        loader=PackageLoader("hd_monitor", ""),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters["data_uri"] = lambda png: "data:image/png;base64," + base64.b64encode(png).decode("ascii")
+    return environment.get_template(template).render(values)
 
 
 def write_page(
     folder: Path, template: str, content: Mapping[str, Any], sections: Sequence[Mapping[str, Any]], names: Sequence[str]
 ) -> Path:
-    """Fill in one of the package's page templates; write the page and its sections' pictures into a folder.
+    """Write the page that a template makes, and its sections' pictures, into a folder.
 
     The folder is made if it is not there. Pictures of these `names` that an earlier report left and this one does not
     have are taken away: they would seem to belong.
@@ -55,18 +68,10 @@ def write_page(
     ParameterError
         If the folder cannot be written.
     """
-    environment = Environment(
-        loader=PackageLoader("hd_monitor.offline.report", "."),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters["data_uri"] = lambda png: "data:image/png;base64," + base64.b64encode(png).decode("ascii")
     path = folder / PAGE
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        path.write_text(environment.get_template(template).render(content=content, sections=sections), encoding="utf-8")
+        path.write_text(render(template, content=content, sections=sections), encoding="utf-8")
         for section in sections:
             prefix = re.sub(r"[^\w.-]+", "_", section["joint"]) + "_" if len(sections) > 1 else ""
             for name in names:
