@@ -1,23 +1,21 @@
 """Tooth check: do the teeth given fit the recording, and if not, which do?"""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
-from ..acquisition.record import JointSamples, Record
+from ..acquisition.record import JointSamples
 from ..assessment import Assessment
 from ..diagnosis.tooth_ranking import ConcludedRanking
-from ..errors import ParameterError
-from ..identification.teeth.candidates import Candidate, ToothPair, every_pair
+from ..identification.teeth.candidates import Candidate, every_pair
 from ..identification.teeth.ranking import odds_as_pair, rank
 from ..orders.joint_segment import JointSegmentCutter, one_speed, samples_of_records
 from ..orders.line_orders import LineOrders
 from ..orders.regression import Products, solve
 from ..orders.scan import OrderScan
-from ..reducer import WAVE_GENERATOR_LOBES
 from ..settings import JointSettings
 
 LONGEST = 600.0
@@ -27,49 +25,29 @@ _APART = 10.0  # s between recordings laid end to end: no stroke continues from 
 
 
 def rank_tooth_pairs(
-    data: JointSamples | Iterable[Record],
-    *,
-    source: str = "joint_effort",
-    candidates: Iterable[tuple[int, int]] | None = None,
-    minimum_speed: float = 0.03,
+    samples: JointSamples, *, source: str = "joint_effort", minimum_speed: float = 0.03
 ) -> ConcludedRanking:
-    """Rank tooth pairs by the evidence for their lines in a recording.
+    """Rank all tooth pairs of `TOOTH_RANGE` by the evidence for their lines in a recording.
 
     Parameters
     ----------
-    data : JointSamples or iterable of Record
-        Joint states, or accelerations with the joint's angle.
+    samples : JointSamples
     source : str
-        For joint states: ``'joint_effort'`` or ``'joint_velocity'``, the field that is the vibration signal.
-    candidates : iterable of (int, int), optional
-        Flexspline and circular-spline teeth; by default every pair of `TOOTH_RANGE` with two teeth of difference.
+        ``'joint_effort'`` or ``'joint_velocity'``, the field that is the vibration signal.
     minimum_speed : float
         Output speed [rad/s] below which the joint counts as standing.
-
-    Raises
-    ------
-    ParameterError
-        If there are no candidates, or one of them does not differ by two teeth.
 
     Notes
     -----
     The orders per output revolution are the tooth numbers themselves in both mounts, so the ranking cannot tell the
     mount. Pairs that share a line, as 198/200 and 200/202 do, are distinguished only if both lines stand out.
     """
-    pairs = [ToothPair(*pair) for pair in candidates] if candidates is not None else every_pair()
-    if not pairs:
-        raise ParameterError("there is no candidate tooth pair to look for; leave `candidates` out for all of them")
-    for pair in pairs:
-        if pair.circular_spline - pair.flexspline != WAVE_GENERATOR_LOBES:
-            raise ParameterError(f"{pair} teeth do not differ by 2: not looked for")
-    lowest = min(LineOrders.of_pair(pair.lines(0.5)).reference_orders.min() for pair in pairs)
-    highest = max(LineOrders.of_pair(pair.lines()).reference_orders.max() for pair in pairs)
+    pairs = every_pair()
+    lowest = LineOrders.of_pair(pairs[0].lines(0.5)).reference_orders.min()
+    highest = LineOrders.of_pair(pairs[-1].lines()).reference_orders.max()
     orders = np.arange(max(math.floor(lowest), 2), math.ceil(highest) + 1)
-    if not isinstance(data, JointSamples):
-        data, source = samples_of_records(data), "joint_effort"
-    span = float(min(pair.flexspline for pair in pairs)), float(max(pair.circular_spline for pair in pairs))
-    cutter = JointSegmentCutter(source, span, minimum_speed)
-    segments = cutter.add(data) + cutter.finish()
+    cutter = JointSegmentCutter(source, (pairs[0].flexspline, pairs[-1].circular_spline), minimum_speed)
+    segments = cutter.add(samples) + cutter.finish()
     scan = OrderScan(segments, orders)
     travel = float(np.ptp(np.concatenate([segment.angle for segment in segments]))) if segments else 0.0
     multiples = [(0.5, *range(2, int(orders[-1] // pair.circular_spline) + 1)) for pair in pairs]

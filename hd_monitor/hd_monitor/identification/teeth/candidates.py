@@ -75,7 +75,7 @@ class Candidate:
 
 
 def every_pair() -> list[ToothPair]:
-    """Every pair with two teeth of difference whose reduction catalogues have."""
+    """Every pair with two teeth of difference whose reduction catalogues have, by rising tooth numbers."""
     return [ToothPair(teeth, teeth + WAVE_GENERATOR_LOBES) for teeth in range(TOOTH_RANGE[0], TOOTH_RANGE[1] + 1)]
 
 

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from hd_monitor.acquisition.record import JointSamples, Record
-from hd_monitor.errors import ParameterError
 from hd_monitor.identification.teeth.candidates import ToothPair, every_pair
 from hd_monitor.model import Dynamics, ParametricModel, StiffnessSeries, Torque
 from hd_monitor.model.simulation import linear_sweep, simulate
 from hd_monitor.offline.identify_teeth import rank_tooth_pairs
+from hd_monitor.orders.joint_segment import samples_of_records
 from hd_monitor.reducer import Reducer
 
 
@@ -89,14 +89,6 @@ def test_multiples_belong_to_their_pair():
     assert ranking.conclusive
 
 
-def test_given_candidates_are_the_only_ones():
-    ranking = rank_tooth_pairs(swinging({200: 0.2, 202: 0.2}), candidates=[(160, 162), (200, 202)])
-    assert [found.teeth for found in ranking.ranked] == [(200, 202), (160, 162)]
-    assert ranking.conclusive
-    (only,) = rank_tooth_pairs(swinging({200: 0.2, 202: 0.2}), candidates=[(200, 202)]).ranked
-    assert isinstance(only.teeth, ToothPair)
-
-
 def test_velocity_can_be_the_signal():
     whole = swinging({})
     speed = whole.speed + 0.003 * (np.cos(160 * whole.angle) + np.cos(162 * whole.angle))
@@ -140,15 +132,9 @@ def accelerations(teeth, from_hz, rate_hz, seconds, noise=0.05):
 
 @pytest.mark.parametrize("teeth", [(160, 162), (120, 122)])
 def test_accelerations_determine_the_teeth_too(teeth):
-    ranking = rank_tooth_pairs(accelerations(teeth, 6.0, 0.4, 40.0))
+    ranking = rank_tooth_pairs(samples_of_records(accelerations(teeth, 6.0, 0.4, 40.0)))
     assert ranking.ranked[0].teeth == ToothPair(*teeth)
     assert ranking.conclusive
-
-
-@pytest.mark.parametrize("candidates", [[], [(160, 164)]])
-def test_refuses_invalid_candidates(candidates):
-    with pytest.raises(ParameterError):
-        rank_tooth_pairs(swinging({}, seconds=5.0), candidates=candidates)
 
 
 @pytest.mark.shared_data
