@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..arrays import FloatArray
 from ..limitation import Limitation, LimitationCode, blocker
 from .record import JointSamples
 
@@ -38,23 +39,25 @@ def compare_motion(samples: JointSamples, *, minimum_speed: float, reduction: fl
     reduction : float
         Motor revolutions per output revolution.
     """
-    known = np.isfinite(samples.angle) & np.isfinite(samples.speed)
-    times, angle, speed = samples.times[known], samples.angle[known], samples.speed[known]
+    times, angle, speed = samples.times, samples.angle, samples.speed
+    if not (known := np.isfinite(angle) & np.isfinite(speed)).all():
+        times, angle, speed = times[known], angle[known], speed[known]
     if times.size < 3 or times[-1] - times[0] < 2.0 * WINDOW:
         return MotionAgreement(False, None)
     steps = angle[1:] - angle[:-1]
     if (wrapped := np.abs(steps) > _WRAPPED).any():
         steps -= math.tau * np.rint(steps / math.tau) * wrapped
     moved, said = steps, 0.5 * (speed[1:] + speed[:-1]) * (times[1:] - times[:-1])
-    if float(np.linalg.norm(moved - said)) > SLIP * max(float(np.linalg.norm(moved)), float(np.linalg.norm(said))):
+    size_moved, size_said, apart = _size(moved), _size(said), _size(moved - said)
+    if apart > SLIP * max(size_moved, size_said):
         # Between single messages quantisation and noise differ, too
         first = np.flatnonzero(np.diff(np.floor((times[1:] - times[0]) / WINDOW), prepend=-1.0))
         moved, said = np.add.reduceat(moved, first), np.add.reduceat(said, first)
-    size_moved, size_said = float(np.linalg.norm(moved)), float(np.linalg.norm(said))
+        size_moved, size_said, apart = _size(moved), _size(said), _size(moved - said)
     larger = max(size_moved, size_said)
     if larger < minimum_speed * float(times[-1] - times[0]) / math.sqrt(moved.size):
         return MotionAgreement(False, None)
-    difference = float(np.linalg.norm(moved - said)) / larger
+    difference = apart / larger
     if difference <= SLIP:
         return MotionAgreement(True, None)
     product = float(moved @ said)
@@ -67,6 +70,11 @@ def compare_motion(samples: JointSamples, *, minimum_speed: float, reduction: fl
     else:
         found = blocker(LimitationCode.MOTION_INCONSISTENT, difference_percent=100.0 * difference)
     return MotionAgreement(True, found)
+
+
+def _size(values: FloatArray) -> float:
+    """Return the Euclidean norm."""
+    return math.sqrt(float(values @ values))
 
 
 def _scaled(ratio: float, reduction: float) -> Limitation:
