@@ -61,9 +61,10 @@ def decompress_where_packed(messages: Sequence[bytes] | NDArray[np.object_]) -> 
     Exception
         As `decompress`.
     """
-    if MAGIC in {message[: len(MAGIC)] for message in messages}:
-        messages = [decompress("zstd", message) if message.startswith(MAGIC) else message for message in messages]
-    return np.asarray(messages, dtype=np.object_)
+    found: NDArray[np.object_] = np.asarray(messages, dtype=np.object_)
+    if (found >= MAGIC).any():  # no CDR message is: it begins with 0
+        found = np.array([decompress("zstd", m) if m.startswith(MAGIC) else m for m in found], dtype=np.object_)
+    return found
 
 
 def decompress_file(source: Path, target: Path) -> None:
