@@ -60,16 +60,17 @@ class Timeline:
     def next(self) -> Period | None:
         """Take out the next complete period, or return None while more data is awaited."""
         while True:
-            start = self._next_start()
-            if start is not None and self._complete(start + self._period):
-                return self._take(start)
+            if (span := self._span()) is not None:
+                start = self._next_start(*span)
+                if start is not None and self._complete(start + self._period, *span):
+                    return self._take(start)
             if not self._pass_jump():
                 return None
 
     def rest(self) -> Period | None:
         """Take out the period of the oldest data even though it is not complete: for the end of a recording."""
-        oldest = self._oldest()
-        return None if oldest is None else self._take(oldest // self._period * self._period)
+        span = self._span()
+        return None if span is None else self._take(span[0] // self._period * self._period)
 
     def _take(self, start: int) -> Period:
         cut, end = self._start is None, start + self._period
@@ -86,32 +87,26 @@ class Timeline:
             following={quantity: buffer.peek_first() for quantity, buffer in self._buffers.items()},
         )
 
-    def _oldest(self) -> int | None:
-        """Earliest stamp [ns] still here."""
-        return min((buffer.oldest for buffer in self._inputs if buffer.oldest is not None), default=None)
+    def _span(self) -> tuple[int, int] | None:
+        """Earliest stamp still here and latest one that came [ns]; None if nothing is here."""
+        oldest = [stamp for buffer in self._inputs if (stamp := buffer.oldest) is not None]
+        newest = [stamp for buffer in self._inputs if (stamp := buffer.newest) is not None]
+        return (min(oldest), max(newest)) if oldest else None
 
-    def _newest(self) -> int | None:
-        """Latest stamp [ns] that came."""
-        return max((buffer.newest for buffer in self._inputs if buffer.newest is not None), default=None)
-
-    def _next_start(self) -> int | None:
+    def _next_start(self, oldest: int, newest: int) -> int | None:
         """Begin at the earliest sample, once all inputs have some or one has waited for the others long enough.
 
         Later, continue where the last period ended, or jump over a time in which no input has anything.
         """
-        oldest, newest = self._oldest(), self._newest()
-        if oldest is None or newest is None:
-            return self._start
         first = oldest // self._period * self._period
         if self._start is not None:
             return max(first, self._start)
         waiting = any(buffer.oldest is None for buffer in self._inputs)
         return None if waiting and newest - oldest < self._timeout else first
 
-    def _complete(self, end: int) -> bool:
+    def _complete(self, end: int, oldest: int, newest: int) -> bool:
         """Whether there is something before `end` [ns], and nothing more will come."""
-        oldest, newest = self._oldest(), self._newest()
-        if oldest is None or newest is None or oldest >= end:
+        if oldest >= end:
             return False
         waiting = any(
             (buffer.complete_until is None or buffer.complete_until < end) and not buffer.jumped
