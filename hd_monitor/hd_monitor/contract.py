@@ -103,12 +103,15 @@ def unpack_blocks(
     heads, samples = data[:, :BLOCK_OFFSET], data[:, BLOCK_OFFSET:]
     counts = heads[:, [0, 1, 3]]
     starts = ((counts >= 0.0) & (counts == np.floor(counts)) & (counts < _TOO_MUCH)).all(axis=1)
-    runs = (heads[:, 2] > 0.0) & (heads[:, 2] < 10.0)
-    good = (starts & runs).tolist()
-    return [
-        Block(int(head[0]) * NANOSECONDS + int(head[1]), head[2], int(head[3]), values) if right else _fault(head)
-        for head, values, right in zip(heads.tolist(), samples, good, strict=True)
-    ]
+    good = starts & (heads[:, 2] > 0.0) & (heads[:, 2] < 10.0)
+    seconds, nanoseconds, sequences = np.where(good, counts.T, 0.0).astype(np.int64)
+    stamps = seconds * NANOSECONDS + nanoseconds
+    blocks: list[Block | LayoutError] = list(
+        map(Block, stamps.tolist(), heads[:, 2].tolist(), sequences.tolist(), samples)
+    )
+    for place in np.flatnonzero(~good).tolist():
+        blocks[place] = _fault(heads[place].tolist())
+    return blocks
 
 
 def _fault(head: list[float]) -> LayoutError:

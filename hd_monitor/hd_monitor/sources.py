@@ -74,20 +74,19 @@ class Source:
         return self.topic if shared else f"{joint}/{self.topic}"
 
 
-def _decode_blocks(messages: Sequence[bytes], settings: "JointSettings") -> Iterator[Decoded]:
-    """Yield the blocks, and what is wrong with the others, in the order of the messages."""
+def _decode_blocks(messages: Sequence[bytes], settings: "JointSettings") -> list[Decoded]:
+    """Return the blocks, and what is wrong with the others, in the order of the messages."""
     groups, faults = cdr.decode_multi_arrays(messages)
-    items: list[tuple[int, contract.Block | str]] = list(faults)
+    items: list[tuple[int, contract.Block | LayoutError | str]] = list(faults)
     for group in groups:
         blocks: Sequence[contract.Block | LayoutError]
         try:
             blocks = contract.unpack_blocks(group.dimensions, group.data_offset, group.data)
         except LayoutError as error:
             blocks = [error] * len(group.place)
-        for place, block in zip(group.place.tolist(), blocks, strict=True):
-            items.append((place, str(block) if isinstance(block, LayoutError) else block))
-    for _, item in sorted(items, key=itemgetter(0)):
-        yield item
+        items += zip(group.place.tolist(), blocks, strict=True)
+    ordered = sorted(items, key=itemgetter(0))
+    return [str(item) if isinstance(item, LayoutError) else item for _, item in ordered]
 
 
 def _decode_vectors(
