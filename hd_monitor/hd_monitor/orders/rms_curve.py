@@ -34,17 +34,16 @@ class RmsAccumulator:
         """Add samples (NaN ones are left out): wave-generator speeds [rpm] and values, both of shape (N,)."""
         speed = np.abs(np.asarray(speed_rpm, dtype=np.float64))
         value = np.asarray(values, dtype=np.float64)
-        good = np.isfinite(speed) & np.isfinite(value)
-        speed, value = speed[good], value[good]
+        if not (good := np.isfinite(speed) & np.isfinite(value)).all():
+            speed, value = speed[good], value[good]
         if not speed.size:
             return
-        numbers = np.rint(speed / self._width).astype(np.int64)
-        first = int(numbers.min())
-        if first == int(numbers.max()):  # the usual case, at a tenth of the cost
+        first, last = (round(float(end) / self._width) for end in (speed.min(), speed.max()))
+        if first == last:  # the usual case, at a tenth of the cost
             own = np.array([float(speed.sum()), float(value @ value), float(speed.size)])
             self._sums[first] = self._sums.get(first, 0.0) + own
             return
-        place = numbers - first
+        place = np.rint(speed / self._width).astype(np.int64) - first
         sums = np.stack([np.bincount(place, speed), np.bincount(place, value * value), np.bincount(place)], axis=1)
         for offset in np.flatnonzero(sums[:, 2]).tolist():
             self._sums[first + offset] = self._sums.get(first + offset, 0.0) + sums[offset]

@@ -29,8 +29,9 @@ class SteadySegment:
         """Append a record, or start again with it where it does not continue or the speed has changed."""
         if not (record.continues and self._fits(record)):
             self._parts.clear()
-        if self._fits(record):
-            self._parts.append(record)
+            if not self._fits(record):
+                return
+        self._parts.append(record)
         while len(self._parts) > 1 and self._too_long():
             self._parts.popleft()
 
