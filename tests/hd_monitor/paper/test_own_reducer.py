@@ -17,6 +17,7 @@ def test_every_figure_is_shown_for_another_reducer(case):
     exhibits = compute(OWN_EXHIBITS, case)
     assert list(exhibits) == [entry.id for entry in OWN_EXHIBITS]
     assert all(shown.panels and not shown.claims for shown in exhibits.values())
+    assert exhibits["F10"].caption.startswith("β1 = 0.0458, β2 = 0.0374, ζ = 0.03, ")
 
 
 def test_characteristic_numbers_are_this_reducers(case):
