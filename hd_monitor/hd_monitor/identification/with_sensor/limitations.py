@@ -13,18 +13,12 @@ from ..fit.unknowns import TORQUE_LINES
 from .context import Context
 from .state import State
 
-LEAST_TRAVEL = math.radians(85.0)
-"""Output travel [rad] below which no part is named: half of what separates the lines by Fourier means, and less."""
-
-LEAST_MOTION = 3.4
-"""Motion [s] below which other solutions have not been looked for yet."""
-
 CONTRADICTION = 4.5
 """Standard deviations by which data must contradict what was given before it is estimated, or said."""
 
-TRUSTED_FREQUENCY, TRUSTED_DAMPING = 0.05, 0.3
-"""Relative errors of the given natural frequency and damping ratio, twice which a name must survive."""
-
+_LEAST_TRAVEL = math.radians(85.0)  # of the output: half of what separates the lines by Fourier means, and less
+_LEAST_MOTION = 3.4  # s, below which other solutions have not been looked for yet
+_TRUSTED_FREQUENCY, _TRUSTED_DAMPING = 0.05, 0.3  # relative errors of what was given, twice which a name must survive
 _VAGUE = 0.5  # standard deviation of both indexes over the warn limit from which nothing can be said
 _NOTABLE = 0.1  # change of the logarithm of the indexes' ratio that matters
 _WIDENED = 2.25  # inflation of the variances that is worth mentioning
@@ -73,16 +67,16 @@ def _out_of_band(context: Context, state: State) -> Limitation | None:
 def _missing(context: Context, state: State, fit: Fit, indexes: Indexes) -> Limitation | None:
     """Return what motion or signal is missing before anything can be named."""
     coverage, warn_index = state.coverage, context.settings.diagnosis.warn_index
-    if coverage.span < LEAST_TRAVEL:
-        travel, needed = math.degrees(coverage.span), math.degrees(LEAST_TRAVEL)
+    if coverage.span < _LEAST_TRAVEL:
+        travel, needed = math.degrees(coverage.span), math.degrees(_LEAST_TRAVEL)
         return blocker(
             LimitationCode.TRAVEL_TOO_SHORT,
             travel_deg=travel,
             needed_deg=needed,
             missing_deg=math.ceil(needed - travel),
         )
-    if coverage.time < LEAST_MOTION:
-        return blocker(LimitationCode.MOTION_TOO_SHORT, motion_s=coverage.time, needed_s=LEAST_MOTION)
+    if coverage.time < _LEAST_MOTION:
+        return blocker(LimitationCode.MOTION_TOO_SHORT, motion_s=coverage.time, needed_s=_LEAST_MOTION)
     scale = max(warn_index, *indexes.index) if state.relative else warn_index
     if min(indexes.std) <= _VAGUE * scale:
         return None
@@ -144,7 +138,7 @@ def _is_fragile(context: Context, state: State, fit: Fit, indexes: Indexes, test
     if min(index) <= 0.0 or (max(index) < context.settings.diagnosis.warn_index and not state.relative):
         return False
     shift = 0.0
-    for place, trusted in ((u.frequency, TRUSTED_FREQUENCY), (u.damping, TRUSTED_DAMPING)):
+    for place, trusted in ((u.frequency, _TRUSTED_FREQUENCY), (u.damping, _TRUSTED_DAMPING)):
         if not state.active[place]:
             test = tests[place]
             error = 1.0 / math.sqrt(1.0 / trusted**2 + 1.0 / test.std**2)
