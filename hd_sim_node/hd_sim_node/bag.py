@@ -15,7 +15,7 @@ from hd_monitor import contract
 from hd_monitor.contract import NANOSECONDS
 from hd_monitor.errors import HdMonitorError
 
-from .encoding import MESSAGE_TYPES, encode
+from .messages.encoding import MESSAGE_TYPES, encode
 from .settings import RigSettings
 from .simulation import Simulation
 

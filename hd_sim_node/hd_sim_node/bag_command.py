@@ -11,9 +11,9 @@ from typing import Any
 from hd_monitor.cli.main import guard
 from hd_monitor.errors import ParameterError
 
-from .defects import CUSTOM, DEFECTS
+from .drive.defects import CUSTOM, DEFECTS
+from .motion.programmes import PROGRAMMES
 from .parameters import NODE_PARAMETERS, PUBLISHED
-from .programmes import PROGRAMMES
 from .settings import RigSettings, pick
 
 

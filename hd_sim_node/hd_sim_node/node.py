@@ -17,12 +17,12 @@ from hd_monitor.ros.declaration import answer, declare
 from hd_monitor.ros.managed_node import ManagedNode, logged, run
 from hd_monitor.ros.queue import queue_depth
 
-from .encoding import MESSAGE_TYPES, encode
+from .drive.stability import check_stability
+from .messages.encoding import MESSAGE_TYPES, encode
+from .messages.stream import Stream
 from .parameters import CHANGEABLE, NODE_PARAMETERS, PARAMETERS
 from .settings import RigSettings, pick
 from .simulation import Simulation, Stretch
-from .stability import check_stability
-from .stream import Stream
 
 NAME = "hd_sim_node"
 PUBLISH_PERIOD = 0.01

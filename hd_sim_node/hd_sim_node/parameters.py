@@ -7,11 +7,11 @@ from hd_monitor.settings import NODE_PARAMETERS as MONITOR_NODE_PARAMETERS
 from hd_monitor.settings import PARAMETERS as MONITOR_PARAMETERS
 from hd_monitor.settings.groups import AXES
 
-from .defects import CUSTOM, DEFECTS
-from .encoder import JointSettings
-from .programmes import PROGRAMMES
-from .sensor import SensorSettings
-from .transport import TransportSettings
+from .drive.defects import CUSTOM, DEFECTS
+from .messages.transport import TransportSettings
+from .motion.programmes import PROGRAMMES
+from .sensing.accelerometer import SensorSettings
+from .sensing.joint import JointSettings
 
 PUBLISHED = ("block", "samples", "both", "none")
 UNSTABLE = ("refuse", "warn", "ignore")

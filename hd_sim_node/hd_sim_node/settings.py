@@ -13,14 +13,14 @@ from hd_monitor.reducer import Reducer
 from hd_monitor.settings import NODE_PARAMETERS, ROS_PARAMETERS
 from hd_monitor.settings import PARAMETERS as MONITOR_PARAMETERS
 
-from .defects import CUSTOM, stiffness_of
-from .encoder import JointSettings
+from .drive.defects import CUSTOM, stiffness_of
+from .drive.surroundings import Surroundings
+from .messages.transport import TransportSettings
+from .motion.programme import Ripple, SpeedProgramme
+from .motion.programmes import build_programme
 from .parameters import PARAMETERS, GeneralSettings, MountingSettings
-from .programme import Ripple, SpeedProgramme
-from .programmes import build_programme
-from .rig import Surroundings
-from .sensor import SensorSettings
-from .transport import TransportSettings
+from .sensing.accelerometer import SensorSettings
+from .sensing.joint import JointSettings
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,12 +11,13 @@ from hd_monitor import contract
 from hd_monitor.arrays import FloatArray, IntArray
 from hd_monitor.contract import Block
 
-from .encoder import Joint, JointBatch
-from .rig import Rig, RigChunk
-from .sensor import Accelerometer, nanoseconds
+from .drive.chunk import RigChunk
+from .drive.rig import Rig
+from .drive.stability import check_stability
+from .messages.transport import Dispatch, Transport, TransportSettings
+from .sensing.accelerometer import Accelerometer, nanoseconds
+from .sensing.joint import Joint, JointBatch
 from .settings import RigSettings
-from .stability import check_stability
-from .transport import Dispatch, Transport, TransportSettings
 
 _STRETCH = 0.25  # s of simulated time in one stretch, or one block if that is longer
 

@@ -14,8 +14,8 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from hd_monitor.model import Oscillator, ParametricModel, StiffnessSeries, gauss_times
-from hd_sim_node.programme import SpeedProgramme
-from hd_sim_node.rig import Rig
+from hd_sim_node.drive.rig import Rig
+from hd_sim_node.motion.programme import SpeedProgramme
 from hd_sim_node.settings import RigSettings
 from hd_sim_node.simulation import Simulation
 

@@ -8,7 +8,7 @@ import pytest
 from hd_monitor import cdr, contract
 from hd_monitor.contract import NANOSECONDS, unpack_blocks
 from hd_monitor.errors import LayoutError
-from hd_sim_node.imu import imu_readings
+from hd_sim_node.sensing.imu import imu_readings
 from hd_sim_node.settings import RigSettings
 from hd_sim_node.simulation import Simulation, Stretch
 

@@ -4,10 +4,10 @@ from pathlib import Path
 
 import pytest
 
+from hd_sim_node.drive.stability import unstable_speeds
+from hd_sim_node.motion.programmes import PROGRAMMES
 from hd_sim_node.parameters import NODE_PARAMETERS
-from hd_sim_node.programmes import PROGRAMMES
 from hd_sim_node.settings import RigSettings, pick
-from hd_sim_node.stability import unstable_speeds
 
 CONFIG = Path(__file__).resolve().parents[2] / "config"
 FILES = sorted(CONFIG.glob("rig*.yaml"))

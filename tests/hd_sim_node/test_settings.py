@@ -7,9 +7,9 @@ import pytest
 from hd_monitor.errors import GeometryError, ParameterError
 from hd_monitor.model import StiffnessSeries
 from hd_monitor.settings import PARAMETERS as MONITOR_PARAMETERS
-from hd_sim_node.defects import FAULTY, HEALTHY
+from hd_sim_node.drive.defects import FAULTY, HEALTHY
+from hd_sim_node.motion.programme import Ripple
 from hd_sim_node.parameters import CHANGEABLE, NODE_PARAMETERS, PARAMETERS
-from hd_sim_node.programme import Ripple
 from hd_sim_node.settings import RigSettings, pick
 
 EVERYTHING = (*PARAMETERS, *NODE_PARAMETERS)

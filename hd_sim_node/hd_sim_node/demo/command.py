@@ -9,7 +9,7 @@ import time
 from hd_monitor import contract
 from hd_monitor.diagnosis.verdict import FaultCode
 
-from ..defects import DEFECTS
+from ..drive.defects import DEFECTS
 from .children import Children, DemoError
 from .listener import Listen, listening
 from .plan import Plan

@@ -5,9 +5,10 @@ import pytest
 from tests.oracle import table_1
 
 from hd_monitor.model import ParametricModel
-from hd_sim_node.imu import imu_readings
-from hd_sim_node.programme import SpeedProgramme
-from hd_sim_node.rig import Rig, Surroundings
+from hd_sim_node.drive.rig import Rig
+from hd_sim_node.drive.surroundings import Surroundings
+from hd_sim_node.motion.programme import SpeedProgramme
+from hd_sim_node.sensing.imu import imu_readings
 
 AROUND = Surroundings()
 RIG = Rig(table_1(), SpeedProgramme(times=[0.0, 1.0], speeds=[900.0, 900.0]), rate=1000.0)

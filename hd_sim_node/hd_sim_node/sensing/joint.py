@@ -9,9 +9,10 @@ import numpy as np
 from hd_monitor.arrays import FloatArray, IntArray
 from hd_monitor.parameter import choice, number, plain
 
-from .randomness import generator
-from .rig import Rig, RigChunk
-from .sensor import nanoseconds
+from ..drive.chunk import RigChunk
+from ..drive.rig import Rig
+from ..randomness import generator
+from .accelerometer import nanoseconds
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

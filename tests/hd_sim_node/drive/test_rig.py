@@ -13,8 +13,9 @@ from tests.oracle import LINES, MODEL, table_1
 from hd_monitor.errors import ParameterError
 from hd_monitor.model import Dynamics, ParametricModel, StiffnessSeries, Torque, line_pairs, steady_state
 from hd_monitor.reducer import Mount, Reducer
-from hd_sim_node.programme import Ripple, SpeedProgramme
-from hd_sim_node.rig import PHASE_STEP, Rig, Surroundings
+from hd_sim_node.drive.rig import PHASE_STEP, Rig
+from hd_sim_node.drive.surroundings import Surroundings
+from hd_sim_node.motion.programme import Ripple, SpeedProgramme
 
 SWEEP = SpeedProgramme(times=[0.0, 0.5, 1.5], speeds=[300.0, 300.0, 2000.0], cycles=1, ripple=Ripple(0.02, 2.0, 0.3))
 

@@ -4,9 +4,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from hd_sim_node.messages.stream import Stream
 from hd_sim_node.settings import RigSettings
 from hd_sim_node.simulation import Simulation
-from hd_sim_node.stream import Stream
 
 SECOND = 1_000_000_000
 SETTINGS = RigSettings.from_mapping({"programme": "fixed", "duration": 2.0, "seed": 1})

@@ -5,10 +5,10 @@ import pytest
 from hd_monitor.errors import ParameterError
 from hd_monitor.model import Dynamics, ParametricModel, StiffnessSeries
 from hd_monitor.settings import JointSettings
-from hd_sim_node.defects import DEFECTS, stiffness_of
-from hd_sim_node.programmes import build_programme
+from hd_sim_node.drive.defects import DEFECTS, stiffness_of
+from hd_sim_node.drive.stability import describe, unstable_speeds
+from hd_sim_node.motion.programmes import build_programme
 from hd_sim_node.settings import RigSettings
-from hd_sim_node.stability import describe, unstable_speeds
 
 LIMITS = JointSettings.from_mapping().diagnosis
 NOTHING = StiffnessSeries()

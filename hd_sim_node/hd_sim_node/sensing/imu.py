@@ -5,7 +5,8 @@ from scipy.constants import g as standard_gravity
 
 from hd_monitor.arrays import FloatArray
 
-from .rig import RigChunk, Surroundings
+from ..drive.chunk import RigChunk
+from ..drive.surroundings import Surroundings
 
 _AXES = "xyz"
 

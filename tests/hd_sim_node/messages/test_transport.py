@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hd_sim_node.transport import Transport, TransportSettings
+from hd_sim_node.messages.transport import Transport, TransportSettings
 
 COUNT = 40_000
 DUE = np.arange(COUNT) * 1_000_000

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from hd_monitor.contract import NANOSECONDS
 
-from .simulation import Simulation, Stretch
+from ..simulation import Simulation, Stretch
 
 
 class Stream:

@@ -8,9 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hd_monitor.model import ParametricModel
-from hd_sim_node.programme import SpeedProgramme
-from hd_sim_node.rig import Rig, Surroundings
-from hd_sim_node.sensor import Accelerometer, SensorSettings
+from hd_sim_node.drive.rig import Rig
+from hd_sim_node.drive.surroundings import Surroundings
+from hd_sim_node.motion.programme import SpeedProgramme
+from hd_sim_node.sensing.accelerometer import Accelerometer, SensorSettings
 
 RATE = 1000.0
 COUNT = 100_000

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.integrate import quad, trapezoid
 
 from hd_monitor.errors import ParameterError
-from hd_sim_node.programme import RPM, Ripple, SpeedProgramme
+from hd_sim_node.motion.programme import RPM, Ripple, SpeedProgramme
 
 SPEEDS = st.floats(-3000.0, 3000.0)
 

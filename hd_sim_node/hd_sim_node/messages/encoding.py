@@ -11,9 +11,9 @@ from hd_monitor.arrays import IntArray
 from hd_monitor.contract import NANOSECONDS
 from hd_monitor.sources import INPUT_SOURCES
 
-from .imu import imu_readings
-from .settings import RigSettings
-from .simulation import Stretch
+from ..sensing.imu import imu_readings
+from ..settings import RigSettings
+from ..simulation import Stretch
 
 MESSAGE_TYPES = {source.topic: source.type.replace("/", "/msg/") for source in INPUT_SOURCES.values()}
 """By topic."""

@@ -8,8 +8,8 @@ from hd_monitor.arrays import FloatArray, IntArray
 from hd_monitor.contract import NANOSECONDS
 from hd_monitor.parameter import number
 
-from .randomness import generator
-from .rig import RigChunk
+from ..drive.chunk import RigChunk
+from ..randomness import generator
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -9,9 +9,10 @@ from hypothesis import strategies as st
 from tests.oracle import table_1
 
 from hd_monitor.model import Torque
-from hd_sim_node.encoder import Joint, JointSettings
-from hd_sim_node.programme import SpeedProgramme
-from hd_sim_node.rig import Rig, Surroundings
+from hd_sim_node.drive.rig import Rig
+from hd_sim_node.drive.surroundings import Surroundings
+from hd_sim_node.motion.programme import SpeedProgramme
+from hd_sim_node.sensing.joint import Joint, JointSettings
 
 PROGRAMME = SpeedProgramme(times=[0.0, 2.0], speeds=[300.0, 900.0], cycles=1)
 MODEL = table_1(torque=Torque(mean=10.0, drive_fluctuation=1.0, load_fluctuation=4.0))

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from hd_monitor.errors import ParameterError
 from hd_monitor.reducer import Mount, Reducer
-from hd_sim_node.programme import RPM
-from hd_sim_node.programmes import PROGRAMMES, build_programme
+from hd_sim_node.motion.programme import RPM
+from hd_sim_node.motion.programmes import PROGRAMMES, build_programme
 from hd_sim_node.settings import RigSettings
 
 REDUCER = Reducer()

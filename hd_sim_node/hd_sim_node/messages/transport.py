@@ -8,7 +8,7 @@ import numpy as np
 from hd_monitor.arrays import IntArray
 from hd_monitor.parameter import number
 
-from .randomness import generator
+from ..randomness import generator
 
 _LATEST = 3.0  # message intervals: a late message lets up to three others pass
 

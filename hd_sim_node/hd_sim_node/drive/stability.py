@@ -6,8 +6,8 @@ from typing import NamedTuple
 from hd_monitor.errors import ParameterError
 from hd_monitor.model import ParametricModel, growth_rate
 
-from .programme import SpeedProgramme
-from .settings import RigSettings
+from ..motion.programme import SpeedProgramme
+from ..settings import RigSettings
 
 _DEEPEST_TONGUE = 4  # at 2 fn / m with m above it, damping outweighs any stiffness fluctuation that a gear can have
 

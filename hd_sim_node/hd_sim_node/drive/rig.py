@@ -5,7 +5,6 @@ from dataclasses import KW_ONLY, dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
-from scipy.interpolate import CubicHermiteSpline
 
 from hd_monitor.arrays import FloatArray, IntArray
 from hd_monitor.errors import ParameterError
@@ -13,70 +12,12 @@ from hd_monitor.model import Oscillator, ParametricModel, Response
 from hd_monitor.model.oscillator import GAUSS_OFFSETS
 from hd_monitor.reducer import WAVE_GENERATOR_LOBES
 
-from .programme import SpeedProgramme
+from ..motion.programme import SpeedProgramme
+from .chunk import RigChunk
+from .surroundings import Surroundings
 
 PHASE_STEP = 0.25
 """Longest integration step, in radians of the fastest of natural vibration and stiffness harmonics: good to 1e-6."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Surroundings:
-    """What acts on the rig besides the model's own torques.
-
-    Parameters
-    ----------
-    gravity : float
-        Amplitude [N·m] of an eccentric load's torque, a cosine of the output angle.
-    gravity_angle : float
-        Output angle [rad] at which gravity's torque is largest.
-    rigid_body : bool
-        Whether the output's own acceleration along the programme counts: its inertia winds up the reducer, and the
-        accelerometer feels it. The paper's model leaves it out.
-    """
-
-    gravity: float = 0.0
-    gravity_angle: float = 0.0
-    rigid_body: bool = False
-
-
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class RigChunk:
-    """A stretch of the rig's motion.
-
-    Attributes
-    ----------
-    first : int
-        Number of its first sample since the start.
-    times : ndarray, shape (samples,)
-        Sampling instants [s] since the start.
-    angle, speed, rigid_acceleration : ndarray, shape (samples,)
-        Output angle q [rad], its rate [rad/s], and what an accelerometer feels of the motion itself [rad/s²].
-    displacement, velocity, acceleration : ndarray, shape (samples,)
-        Torsional vibration θ [rad], θ' [rad/s], θ'' [rad/s²].
-    torque : ndarray, shape (samples,)
-        Torque M on the output [N·m].
-    """
-
-    first: int
-    times: FloatArray
-    angle: FloatArray
-    speed: FloatArray
-    rigid_acceleration: FloatArray
-    displacement: FloatArray
-    velocity: FloatArray
-    acceleration: FloatArray
-    torque: FloatArray
-    _fine_times: FloatArray
-    _fine: Response
-
-    def __len__(self) -> int:
-        """Return the number of samples."""
-        return int(self.times.size)
-
-    def vibration_at(self, times: FloatArray) -> Response:
-        """θ [rad] and θ' [rad/s] at `times` [s] within this stretch, by the integration's own cubic pieces."""
-        spline = CubicHermiteSpline(self._fine_times, self._fine.displacement, self._fine.velocity)
-        return Response(spline(times), spline(times, nu=1))
 
 
 @dataclass(eq=False)

@@ -1,0 +1,48 @@
+"""A stretch of the rig's motion, as the integration leaves it."""
+
+from dataclasses import dataclass
+
+from scipy.interpolate import CubicHermiteSpline
+
+from hd_monitor.arrays import FloatArray
+from hd_monitor.model import Response
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class RigChunk:
+    """A stretch of the rig's motion.
+
+    Attributes
+    ----------
+    first : int
+        Number of its first sample since the start.
+    times : ndarray, shape (samples,)
+        Sampling instants [s] since the start.
+    angle, speed, rigid_acceleration : ndarray, shape (samples,)
+        Output angle q [rad], its rate [rad/s], and what an accelerometer feels of the motion itself [rad/s²].
+    displacement, velocity, acceleration : ndarray, shape (samples,)
+        Torsional vibration θ [rad], θ' [rad/s], θ'' [rad/s²].
+    torque : ndarray, shape (samples,)
+        Torque M on the output [N·m].
+    """
+
+    first: int
+    times: FloatArray
+    angle: FloatArray
+    speed: FloatArray
+    rigid_acceleration: FloatArray
+    displacement: FloatArray
+    velocity: FloatArray
+    acceleration: FloatArray
+    torque: FloatArray
+    _fine_times: FloatArray
+    _fine: Response
+
+    def __len__(self) -> int:
+        """Return the number of samples."""
+        return int(self.times.size)
+
+    def vibration_at(self, times: FloatArray) -> Response:
+        """θ [rad] and θ' [rad/s] at `times` [s] within this stretch, by the integration's own cubic pieces."""
+        spline = CubicHermiteSpline(self._fine_times, self._fine.displacement, self._fine.velocity)
+        return Response(spline(times), spline(times, nu=1))

@@ -1,0 +1,1 @@
+"""Measurements as messages: serialised, lost or late in transit, paced by a clock."""

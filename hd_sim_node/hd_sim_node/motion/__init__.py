@@ -1,0 +1,1 @@
+"""The motion that is demanded of the wave generator: speed programmes."""
