@@ -8,6 +8,7 @@ from hd_monitor.settings import PARAMETERS as MONITOR_PARAMETERS
 from hd_monitor.settings.groups import AXES
 
 from .drive.defects import CUSTOM, DEFECTS
+from .drive.surroundings import ChangingInertia, MotorRipple
 from .messages.transport import TransportSettings
 from .motion.programmes import PROGRAMMES
 from .sensing.accelerometer import SensorSettings
@@ -81,7 +82,10 @@ PARAMETERS = (
         load_order=number(2, "", 1, 100, "load cycles per output revolution; 2: each line in the other's place"),
         gravity=number(0.0, "N·m", 0.0, 1e6, "amplitude of an eccentric load's torque, 1 per output revolution"),
         gravity_angle=number(0.0, "deg", -1e6, 1e6, "output angle at which gravity's torque is largest"),
+        payload=number(0.0, "N·m", 0.0, 1e6, "added to torque.gravity while the payload is carried"),
     ),
+    *parameters_of(MotorRipple, "torque."),
+    *parameters_of(ChangingInertia, "inertia."),
     *parameters_of(MountingSettings, "sensor."),
     *parameters_of(SensorSettings, "sensor."),
     *parameters_of(TransportSettings, "transport."),
@@ -91,9 +95,10 @@ PARAMETERS = (
 
 
 CHANGEABLE = (
-    *("defect", "flexspline.", "circular_spline.", "dynamics.", "torque.", "rigid_body", "transport.", "unstable"),
+    *("defect", "flexspline.", "circular_spline.", "dynamics.", "torque.", "inertia.", "rigid_body", "transport."),
     *("sensor.noise", "sensor.offset", "sensor.spike", "sensor.full_scale", "sensor.resolution", "sensor.stuck_after"),
     *("sensor.jitter", "sensor.delay", "joint_states.effort", "joint_states.velocity", "joint_states.resolution"),
+    "unstable",
 )
 """Parameters that begin so may be changed while the rig runs; all others decide how it is set up."""
 

@@ -14,7 +14,7 @@ from hd_monitor.settings import NODE_PARAMETERS, ROS_PARAMETERS
 from hd_monitor.settings import PARAMETERS as MONITOR_PARAMETERS
 
 from .drive.defects import CUSTOM, stiffness_of
-from .drive.surroundings import Surroundings
+from .drive.surroundings import ChangingInertia, MotorRipple, Surroundings
 from .messages.transport import TransportSettings
 from .motion.programme import Ripple, SpeedProgramme
 from .motion.programmes import build_programme
@@ -46,7 +46,7 @@ class RigSettings:
             If a name is unknown or a value is wrong, alone or beside the others.
         """
         settings = cls(check_all(PARAMETERS, given or {}, owner="the rig"))
-        for part in ("model", "programme"):  # what fits together is seen here, not at the first sample
+        for part in ("model", "programme", "surroundings"):  # what fits together is seen here, not at the first sample
             getattr(settings, part)
         return settings
 
@@ -106,7 +106,10 @@ class RigSettings:
         return Surroundings(
             gravity=self.values["torque.gravity"],
             gravity_angle=math.radians(self.values["torque.gravity_angle"]),
+            payload=self.values["torque.payload"],
             rigid_body=self.general.rigid_body,
+            ripple=fill_group(self.values, "torque", MotorRipple),
+            inertia=fill_group(self.values, "inertia", ChangingInertia),
         )
 
     @property

@@ -14,7 +14,7 @@ from hd_monitor.reducer import WAVE_GENERATOR_LOBES
 
 from ..motion.programme import SpeedProgramme
 from .chunk import RigChunk
-from .surroundings import Surroundings
+from .surroundings import Motion, Surroundings
 
 PHASE_STEP = 0.25
 """Longest integration step, in radians of the fastest of natural vibration and stiffness harmonics: good to 1e-6."""
@@ -75,23 +75,30 @@ class Rig:
         """Output speed [rad/s] at `times` [s]."""
         return self.programme.speed(times) / self.model.reducer.reduction
 
+    def motion(self, times: npt.ArrayLike) -> Motion:
+        """Motion that the programme demands of the output at `times` [s], any shape."""
+        t = np.asarray(times, dtype=np.float64)
+        course, reduction = self.programme.course(t), self.model.reducer.reduction
+        angle = self.start_angle + course.angle / reduction
+        return Motion(
+            times=t,
+            angle=angle,
+            speed=course.speed / reduction,
+            acceleration=course.acceleration / reduction,
+            turn=reduction * angle,
+            carried=course.carried,
+        )
+
     def rigid_acceleration(self, times: npt.ArrayLike) -> FloatArray:
         """Acceleration [rad/s²] of the output along the programme at `times` [s]; 0 where it is left out."""
-        if not self.surroundings.rigid_body:
-            return np.zeros(np.shape(times))
-        return self.programme.acceleration(times) / self.model.reducer.reduction
+        return self.motion(times).acceleration if self.surroundings.rigid_body else np.zeros(np.shape(times))
 
     def torque(self, times: npt.ArrayLike, *, drive: bool = True) -> FloatArray:
         """Torque M [N·m] that winds up the reducer at `times` [s], with or without the drive's own fluctuation."""
-        angle = self.angle(times)
-        around = self.surroundings
+        motion = self.motion(times)
         model = self.model if drive else replace(self.model, torque=replace(self.model.torque, drive_fluctuation=0.0))
-        torque = model.torque_at(angle)
-        if around.gravity:
-            torque = torque + around.gravity * np.cos(angle - around.gravity_angle)
-        if around.rigid_body:
-            torque = torque - self.model.dynamics.inertia * self.rigid_acceleration(times)
-        return torque
+        own = model.torque_at(motion.angle)
+        return np.asarray(self.surroundings.torque(motion, model.dynamics.inertia, own=own, drive=drive))
 
     def reaction(self, times: npt.ArrayLike, vibration: Response) -> FloatArray:
         """Torque [N·m] that the reducer transmits at `times` [s]: of its stiffness and its damping."""
