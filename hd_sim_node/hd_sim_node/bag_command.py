@@ -11,6 +11,7 @@ from typing import Any
 from hd_monitor.cli.main import guard
 from hd_monitor.errors import ParameterError
 
+from .drive.catalogue import DRIVES
 from .drive.defects import CUSTOM, DEFECTS
 from .motion.programmes import PROGRAMMES
 from .parameters import NODE_PARAMETERS, PUBLISHED
@@ -38,6 +39,7 @@ def build_parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--set", action="append", default=[], metavar="NAME:=VALUE", help="set a parameter of every rig; repeatable"
     )
+    parser.add_argument("--drive", choices=tuple(DRIVES), help="preset of the parameters that are not given")
     parser.add_argument("--defect", choices=(*DEFECTS, CUSTOM), help="the bad spline")
     parser.add_argument("--programme", choices=tuple(PROGRAMMES), help="what the wave generator does")
     parser.add_argument("--publish", choices=PUBLISHED, help="form of the vibration")
@@ -66,7 +68,7 @@ def _run(arguments: argparse.Namespace) -> int:
     from .bag import write_bag
 
     overrides = dict(parse_override(text) for text in arguments.set)
-    shortcuts = ("defect", "programme", "publish", "duration", "seed")
+    shortcuts = ("drive", "defect", "programme", "publish", "duration", "seed")
     overrides |= {name: value for name in shortcuts if (value := getattr(arguments, name)) is not None}
     files: list[Mapping[str, Any]] = [load_parameters(path, arguments.node) for path in arguments.params] or [{}]
     rigs = [RigSettings.from_mapping(pick({**given, **overrides}, NODE_PARAMETERS)) for given in files]

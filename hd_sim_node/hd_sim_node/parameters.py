@@ -7,6 +7,7 @@ from hd_monitor.settings import NODE_PARAMETERS as MONITOR_NODE_PARAMETERS
 from hd_monitor.settings import PARAMETERS as MONITOR_PARAMETERS
 from hd_monitor.settings.groups import AXES
 
+from .drive.catalogue import DRIVES, PAPER
 from .drive.defects import CUSTOM, DEFECTS
 from .drive.surroundings import ChangingInertia, MotorRipple
 from .messages.transport import TransportSettings
@@ -36,6 +37,12 @@ class GeneralSettings:
     cycles: int = number(0, "", 0, 1_000_000, "runs of the programme; 0: without end")
     duration: float = number(0.0, "s", 0.0, 1e7, "simulated time after which it ends; 0: as long as the programme")
     start_angle: float = number(0.0, "deg", -1e6, 1e6, "output angle at the start")
+    drive: str = choice(
+        PAPER,
+        DRIVES,
+        "preset of the parameters that are not given; paper: every default; catalogue: a new unit of size 20 and ratio "
+        "80; worn: the same at the end of its life",
+    )
     defect: str = choice("flexspline", (*DEFECTS, CUSTOM), "the bad spline; custom: the β given for both splines")
     rigid_body: bool = plain(
         False, "count the output's own acceleration: it winds up the reducer and the sensor feels it"

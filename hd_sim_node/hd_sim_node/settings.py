@@ -13,6 +13,7 @@ from hd_monitor.reducer import Reducer
 from hd_monitor.settings import NODE_PARAMETERS, ROS_PARAMETERS
 from hd_monitor.settings import PARAMETERS as MONITOR_PARAMETERS
 
+from .drive.catalogue import PAPER, preset
 from .drive.defects import CUSTOM, stiffness_of
 from .drive.surroundings import ChangingInertia, MotorRipple, Surroundings
 from .messages.transport import TransportSettings
@@ -38,14 +39,15 @@ class RigSettings:
 
     @classmethod
     def from_mapping(cls, given: Mapping[str, Any] | None = None) -> Self:
-        """Check dotted or nested parameters and fill in the defaults.
+        """Check dotted or nested parameters and fill in the drive's preset, then the defaults.
 
         Raises
         ------
         ParameterError, GeometryError
             If a name is unknown or a value is wrong, alone or beside the others.
         """
-        settings = cls(check_all(PARAMETERS, given or {}, owner="the rig"))
+        own = flatten(given or {})
+        settings = cls(check_all(PARAMETERS, {**preset(own.get("drive")), **own}, owner="the rig"))
         for part in ("model", "programme", "surroundings"):  # what fits together is seen here, not at the first sample
             getattr(settings, part)
         return settings
@@ -63,13 +65,19 @@ class RigSettings:
     @property
     def remarks(self) -> list[str]:
         """Sentences about settings that the user may not have intended."""
-        defect = self.general.defect
-        if defect == CUSTOM or not any((*self.values["flexspline.beta"], *self.values["circular_spline.beta"])):
-            return []
-        return [
-            f"defect = {defect!r} ignores the flexspline.beta and circular_spline.beta given; set defect to "
-            "'custom' to use them"
-        ]
+        remarks, drive, defect = [], self.general.drive, self.general.defect
+        if drive != PAPER:
+            given = fill_group(self.values, "dynamics", Dynamics)
+            remarks.append(
+                f"drive = {drive!r} has a natural frequency of {given.natural_frequency:g} Hz and an inertia of "
+                f"{given.inertia:g} kg·m²; give the monitor the same dynamics"
+            )
+        if defect != CUSTOM and any((*self.values["flexspline.beta"], *self.values["circular_spline.beta"])):
+            remarks.append(
+                f"defect = {defect!r} ignores the flexspline.beta and circular_spline.beta given; set defect to "
+                "'custom' to use them"
+            )
+        return remarks
 
     @property
     def reducer(self) -> Reducer:

@@ -13,6 +13,7 @@ from launch import LaunchDescription
 # Arguments that stand for a parameter of the same name: its type and what it is for. Empty leaves the parameter to the
 # parameter file, or to its default.
 PARAMETERS = {
+    "drive": (str, "preset of the parameters that are not given: paper, catalogue or worn"),
     "defect": (str, "the bad spline: flexspline, circular_spline, both, none or custom"),
     "programme": (str, "what the wave generator does: dwell, fixed, sweep, strokes or profile"),
     "publish": (str, "form of the torsional acceleration: block, samples, both or none"),

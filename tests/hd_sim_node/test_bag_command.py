@@ -134,3 +134,8 @@ def test_runs_without_ros(tmp_path):
     command = [sys.executable, "-c", program, *SHORT, "--out", str(tmp_path / "bag")]
     done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
     assert done.returncode == 0, done.stderr
+
+
+def test_a_drive_from_the_catalogue(tmp_path, capsys):
+    assert main([*SHORT, "--drive", "catalogue", "--out", str(tmp_path / "bag")]) == 0
+    assert "give the monitor the same dynamics" in capsys.readouterr().err

@@ -1,0 +1,81 @@
+"""Drives to choose by name: presets fill in what the user has not given."""
+
+import math
+
+import pytest
+
+from hd_monitor.errors import ParameterError
+from hd_sim_node.drive.catalogue import DRIVES, PAPER, SOURCES, preset
+from hd_sim_node.drive.defects import FAULTY, HEALTHY
+from hd_sim_node.drive.stability import check_stability
+from hd_sim_node.motion.programmes import PROGRAMMES
+from hd_sim_node.parameters import PARAMETERS
+from hd_sim_node.settings import RigSettings
+
+TABLE = {parameter.name: parameter for parameter in PARAMETERS}
+PRESETS = sorted(set(DRIVES) - {PAPER})
+
+
+@pytest.mark.parametrize("drive", PRESETS)
+def test_every_value_is_one_of_its_parameter_and_has_a_source(drive):
+    for name, (value, source) in DRIVES[drive].items():
+        assert TABLE[name].check(value) == value
+        assert len(source) > 5, name
+
+
+def test_every_document_is_used():
+    said = " ".join(entry.source for drive in DRIVES.values() for entry in drive.values())
+    assert [name for name in SOURCES if name not in said] == []
+
+
+def test_the_papers_drive_is_the_default_and_changes_nothing():
+    assert RigSettings.from_mapping() == RigSettings.from_mapping({"drive": PAPER})
+    assert dict(RigSettings.from_mapping().values) == {parameter.name: parameter.default for parameter in PARAMETERS}
+
+
+@pytest.mark.parametrize("drive", PRESETS)
+def test_a_preset_replaces_defaults_only(drive):
+    values = RigSettings.from_mapping({"drive": drive}).values
+    changed = {name for name, parameter in TABLE.items() if values[name] != parameter.default} - {"drive"}
+    assert changed <= set(DRIVES[drive])
+    assert {name: values[name] for name in DRIVES[drive]} == preset(drive)
+
+
+@pytest.mark.parametrize("given", [{"dynamics.inertia": 2.0}, {"dynamics": {"inertia": 2.0}}])
+def test_the_users_own_value_wins(given):
+    settings = RigSettings.from_mapping({"drive": "catalogue", **given})
+    assert settings.model.dynamics.inertia == 2.0
+    assert settings.model.dynamics.natural_frequency == preset("catalogue")["dynamics.natural_frequency"]
+
+
+@pytest.mark.parametrize("drive", PRESETS)
+def test_a_defect_may_be_chosen_beside_it(drive):
+    model = RigSettings.from_mapping({"drive": drive, "defect": "circular_spline"}).model
+    assert (model.flexspline, model.circular_spline) == (HEALTHY, FAULTY)
+
+
+def test_a_new_unit_is_sound_and_a_worn_one_is_not():
+    assert RigSettings.from_mapping({"drive": "catalogue"}).model.flexspline == HEALTHY
+    assert RigSettings.from_mapping({"drive": "worn"}).model.flexspline == FAULTY
+
+
+@pytest.mark.parametrize(("drive", "stiffness"), [("catalogue", 25e3), ("worn", 20e3)])
+def test_the_natural_frequency_is_that_of_the_inertia_on_the_middle_stiffness(drive, stiffness):
+    dynamics = RigSettings.from_mapping({"drive": drive}).model.dynamics
+    assert dynamics.inertia * (2.0 * math.pi * dynamics.natural_frequency) ** 2 == pytest.approx(stiffness, rel=1e-3)
+
+
+@pytest.mark.parametrize("drive", PRESETS)
+@pytest.mark.parametrize("programme", sorted(set(PROGRAMMES) - {"profile"}))
+def test_every_programme_runs_stably(drive, programme):
+    assert check_stability(RigSettings.from_mapping({"drive": drive, "programme": programme})) == ""
+
+
+def test_an_unknown_drive_is_refused():
+    with pytest.raises(ParameterError, match="drive = 'cyclo' is unknown; choose one of: paper, catalogue, worn"):
+        RigSettings.from_mapping({"drive": "cyclo"})
+
+
+def test_the_monitor_must_be_told():
+    (remark,) = RigSettings.from_mapping({"drive": "catalogue"}).remarks
+    assert "31.21 Hz and an inertia of 0.65 kg·m²" in remark
