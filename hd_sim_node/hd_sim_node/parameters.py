@@ -9,6 +9,7 @@ from hd_monitor.settings.groups import AXES
 
 from .drive.catalogue import DRIVES, PAPER
 from .drive.defects import CUSTOM, DEFECTS
+from .drive.stability import POLICIES as UNSTABLE_POLICIES
 from .drive.surroundings import ChangingInertia, MotorRipple
 from .messages.transport import TransportSettings
 from .motion.programmes import PROGRAMMES
@@ -16,7 +17,6 @@ from .sensing.accelerometer import SensorSettings
 from .sensing.joint import JointSettings
 
 PUBLISHED = ("block", "samples", "both", "none")
-UNSTABLE = ("refuse", "warn", "ignore")
 
 
 def _beta(spline: str) -> tuple[Parameter, ...]:
@@ -52,7 +52,7 @@ class GeneralSettings:
     block_size: int = number(50, "", 1, 100_000, "samples in a block")
     seed: int = number(0, "", 0, 2**31 - 1, "of all random numbers")
     unstable: str = choice(
-        "refuse", UNSTABLE, "what to do if vibration grows without bound at a speed of the programme"
+        "refuse", UNSTABLE_POLICIES, "what to do if vibration grows without bound at a speed of the programme"
     )
 
 

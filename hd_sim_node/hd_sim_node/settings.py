@@ -106,7 +106,9 @@ class RigSettings:
     def programme(self) -> SpeedProgramme:
         """The speed programme."""
         general, ripple = self.general, Ripple(self.values["speed_ripple.amplitude"], self.values["speed_ripple.order"])
-        return build_programme(general.programme, self.values, self.reducer, cycles=general.cycles, ripple=ripple)
+        return build_programme(
+            general.programme, self.values, self.reducer, cycles=general.cycles, ripple=ripple, seed=general.seed
+        )
 
     @property
     def surroundings(self) -> Surroundings:

@@ -77,7 +77,7 @@ class Simulation:
     """
 
     def __init__(self, settings: RigSettings) -> None:
-        self.warning = check_stability(settings)
+        self.warning = check_stability(settings.model, settings.programme, settings.general.unstable)
         self.settings = settings
         general, rate, seed = settings.general, settings.mounting.rate, settings.general.seed
         self._rig = Rig(
@@ -125,7 +125,7 @@ class Simulation:
         ParameterError
             If vibration would grow without bound, as at the start; nothing is changed then.
         """
-        self.warning = check_stability(settings)
+        self.warning = check_stability(settings.model, settings.programme, settings.general.unstable)
         self.settings = settings
         self._rig.model = settings.model
         self._rig.surroundings = settings.surroundings

@@ -7,7 +7,9 @@ from hd_monitor.errors import ParameterError
 from hd_monitor.model import ParametricModel, growth_rate
 
 from ..motion.programme import SpeedProgramme
-from ..settings import RigSettings
+
+POLICIES = ("refuse", "warn", "ignore")
+"""What to do if vibration grows without bound at a speed of the programme."""
 
 _DEEPEST_TONGUE = 4  # at 2 fn / m with m above it, damping outweighs any stiffness fluctuation that a gear can have
 
@@ -42,8 +44,15 @@ def describe(unstable: Iterable[UnstableSpeed]) -> str:
     )
 
 
-def check_stability(settings: RigSettings) -> str:
-    """Search the programme for speeds at which vibration grows without bound, unless ``unstable`` is ``ignore``.
+def check_stability(model: ParametricModel, programme: SpeedProgramme, policy: str) -> str:
+    """Search the programme for speeds at which vibration grows without bound, unless told to ignore them.
+
+    Parameters
+    ----------
+    model : ParametricModel
+    programme : SpeedProgramme
+    policy : str
+        One of :data:`POLICIES`.
 
     Returns
     -------
@@ -53,12 +62,10 @@ def check_stability(settings: RigSettings) -> str:
     Raises
     ------
     ParameterError
-        If ``unstable`` is ``refuse``.
+        If the policy is ``refuse`` and there is such a speed.
     """
-    if settings.general.unstable == "ignore":
-        return ""
-    found = unstable_speeds(settings.model, settings.programme)
+    found = unstable_speeds(model, programme) if policy != "ignore" else []
     warning = describe(found) if found else ""
-    if warning and settings.general.unstable == "refuse":
+    if warning and policy == "refuse":
         raise ParameterError(warning)
     return warning
