@@ -110,6 +110,45 @@ def test_after_a_week_the_angle_is_still_exact():
     assert turned == pytest.approx(50 * math.tau, abs=1e-6)
 
 
+@given(programmes())
+def test_within_a_stroke_the_sense_never_changes(programme):
+    times = np.linspace(0.0, 2.0 * programme.cycle_duration, 1001)
+    strokes, senses = programme.strokes(times), np.sign(programme.speed(times))
+    assert np.all(np.diff(strokes) >= 0)
+    for stroke in np.unique(strokes):
+        assert not {-1.0, 1.0} <= set(senses[strokes == stroke])
+
+
+def test_strokes_begin_where_the_drive_starts_or_turns():
+    programme = SpeedProgramme(
+        times=[0.0, 1.0, 2.0, 3.0, 4.0, 6.0, 7.0], speeds=[0.0, 0.0, 60.0, 60.0, 0.0, -60.0, 0.0]
+    )
+    times = [0.0, 0.99, 1.0, 3.99, 4.0, 7.99, 8.0, 11.0, 15.0]
+    assert programme.strokes(times).tolist() == [0, 0, 1, 1, 2, 2, 3, 4, 5]
+
+
+def test_a_reversal_begins_a_stroke_at_standstill():
+    programme = SpeedProgramme(times=[0.0, 4.0, 8.0], speeds=[100.0, -300.0, 100.0], cycles=2)
+    assert programme.strokes([0.99, 1.01, 6.99, 7.01, 8.5, 9.01, 100.0]).tolist() == [0, 1, 1, 2, 2, 3, 4]
+
+
+def test_a_programme_that_never_stops_has_no_strokes():
+    programme = SpeedProgramme(times=[0.0, 1.0, 2.0], speeds=[100.0, 300.0, 100.0])
+    assert not programme.strokes(np.linspace(0.0, 100.0, 50)).any()
+
+
+def test_the_payload_passes_from_corner_to_corner_as_half_a_cosine_wave():
+    programme = SpeedProgramme(times=[0.0, 2.0, 3.0, 5.0], speeds=[0.0] * 4, carried=[0.0, 1.0, 1.0, 0.0])
+    times = np.array([0.0, 0.5, 1.0, 2.0, 2.5, 4.5, 5.5])
+    expected = [0.0, 0.5 - 0.5**1.5, 0.5, 1.0, 1.0, 0.5 - 0.5**1.5, 0.5 - 0.5**1.5]
+    np.testing.assert_allclose(programme.course(times).carried, expected, atol=1e-12)
+
+
+def test_the_payload_stays_as_it_is_behind_the_end():
+    programme = SpeedProgramme(times=[0.0, 1.0], speeds=[0.0, 0.0], cycles=1, carried=[0.0, 0.5])
+    assert programme.course(9.0).carried == 0.5
+
+
 def test_visited_speeds_are_the_held_ones_and_a_grid_between():
     programme = SpeedProgramme(times=[0.0, 1.0, 2.0, 3.0], speeds=[210.0, 210.0, -290.0, -290.0], cycles=1)
     visited = programme.visited_speeds(spacing=100.0).tolist()
@@ -133,6 +172,9 @@ def test_visited_speeds_do_not_reach_below_the_slowest():
         ({"cycles": -1}, "negative"),
         ({"cycles": 0}, "a drive cannot jump"),
         ({"cycles": 2}, "a drive cannot jump"),
+        ({"carried": [0.0]}, "1 fractions of the payload for 2 corners"),
+        ({"carried": [0.0, 1.5]}, "from 0 to 1.5; give one from 0 to 1"),
+        ({"cycles": 0, "speeds": [1.0, 1.0], "carried": [0.0, 1.0]}, "ends with 1 of the payload"),
         ({"ripple": Ripple(1.0)}, "stop or reverse"),
         ({"ripple": Ripple(-0.1)}, "stop or reverse"),
         ({"ripple": Ripple(math.nan)}, "stop or reverse"),
