@@ -12,6 +12,7 @@ from rosbags.rosbag2 import Reader
 
 from hd_sim_node.bag import COMPRESSIONS, STORAGES
 from hd_sim_node.bag_command import build_parser, main
+from hd_sim_node.motion.programmes import PROGRAMMES
 
 SHORT = ["--programme", "fixed", "--duration", "0.5"]
 
@@ -31,6 +32,13 @@ def test_writes_a_bag_and_says_so(tmp_path, capsys):
     said = capsys.readouterr().out
     assert "0.5 s simulated" in said
     assert "/torsional_acceleration: 500 messages" in said
+
+
+@pytest.mark.parametrize("programme", PROGRAMMES)
+def test_writes_every_programme(tmp_path, programme):
+    command = ["--programme", programme, "--duration", "0.5", "--out", str(tmp_path / "bag")]
+    assert main(command) == 0
+    assert topics(tmp_path / "bag") == {"/torsional_acceleration/block": 10, "/joint_states": 50}
 
 
 @pytest.mark.parametrize("storage", STORAGES)

@@ -26,7 +26,8 @@ def imu_readings(
         The axis along the motion, ``'y'`` or with a minus. The next one in the order x, y, z, x lies along the
         joint's axis and the remaining one points outwards, so that for y these are z and x.
     surroundings : Surroundings
-        With a gravity torque the joint's axis is horizontal and the tangential axis feels gravity; else it is vertical.
+        With a torque of gravity or payload the joint's axis is horizontal and the tangential axis feels gravity; else
+        it is vertical.
 
     Returns
     -------
@@ -39,7 +40,7 @@ def imu_readings(
     force, turning = np.zeros((len(motion), 3)), np.zeros((len(motion), 3))
     force[:, tangential] = radius * samples
     force[:, outward] = -radius * motion.speed**2
-    if surroundings.gravity:
+    if surroundings.gravity or surroundings.payload:
         turn = motion.angle - surroundings.gravity_angle
         force[:, tangential] -= standard_gravity * np.cos(turn)
         force[:, outward] -= standard_gravity * np.sin(turn)

@@ -51,6 +51,14 @@ def test_gravity_is_felt_in_the_plane_of_motion_where_it_loads_the_joint():
     np.testing.assert_allclose(force[:, 1], -9.80665 * torque / 3.0, atol=1e-9)
 
 
+def test_a_joint_that_only_the_payload_loads_lies_the_same_way():
+    readings = [
+        imu_readings(MOTION, SAMPLES, radius=0.5, axis="y", surroundings=around)
+        for around in (Surroundings(gravity=3.0), Surroundings(payload=3.0))
+    ]
+    np.testing.assert_array_equal(readings[0][0], readings[1][0])
+
+
 def test_turning_by_gravity_has_the_sense_of_the_motion():
     """As the link turns by dq, gravity turns by -dq seen from it: d(force)/dq is force turned by a right angle."""
     around = Surroundings(gravity=3.0)
