@@ -1,7 +1,7 @@
 """What a kind of programme is, and the pieces that its corners are made of."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -59,12 +59,10 @@ def chain(start: float, pieces: Sequence[Piece] | FloatArray) -> Corners:
     return Corners(times[lasts], np.append(start, speeds)[lasts], np.append(0.0, carried)[lasts])
 
 
-def stroke(
-    reducer: Reducer, angle: float, *, speed: float, acceleration: float, pause: float = 0.0, carried: float = 0.0
-) -> list[Piece]:
-    """Move the output by `angle` [deg], signed, from standstill to standstill, and rest for `pause` [s].
+def stroke(reducer: Reducer, angle: float, speed: float, acceleration: float, *, carried: float = 0.0) -> list[Piece]:
+    """Move the output by `angle` [deg], signed, from standstill to standstill.
 
-    `speed` [rpm] and `acceleration` [rpm/s] are the wave generator's.
+    `speed` [rpm] and `acceleration` [rpm/s] are the wave generator's; `carried` is the fraction of the payload.
     """
     revolutions = abs(angle) / 360.0 * reducer.reduction
     # A short stroke brakes before it has reached its speed: v² / (60 a) revolutions go into the two ramps.
@@ -73,7 +71,16 @@ def stroke(
     ramp = peak / acceleration
     hold = 60.0 * revolutions / peak - ramp if peak < reachable else 0.0
     top = math.copysign(peak, angle)
-    return [Piece(t, v, carried) for t, v in ((ramp, top), (hold, top), (ramp, 0.0), (pause, 0.0))]
+    return [Piece(ramp, top, carried), Piece(hold, top, carried), Piece(ramp, 0.0, carried)]
+
+
+def strokes(
+    reducer: Reducer, moves: Iterable[tuple[float, float]], *, acceleration: float, pause: float
+) -> list[Piece]:
+    """Make a stroke of each (angle [deg], speed [rpm]), with `pause` [s] of standstill after it."""
+    return [
+        piece for angle, speed in moves for piece in (*stroke(reducer, angle, speed, acceleration), Piece(pause, 0.0))
+    ]
 
 
 def speeds_between(first: float, last: float, step: float) -> list[float]:

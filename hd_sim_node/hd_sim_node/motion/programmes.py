@@ -12,7 +12,7 @@ from hd_monitor.errors import ParameterError
 from hd_monitor.parameter import number, table
 from hd_monitor.reducer import Reducer
 
-from .kind import Corners, Piece, ProgrammeKind, Setup, chain, rate_parameter, speed_parameter, speeds_between, stroke
+from .kind import Corners, Piece, ProgrammeKind, Setup, chain, rate_parameter, speed_parameter, speeds_between, strokes
 from .programme import NO_RIPPLE, Ripple, SpeedProgramme
 from .robot import ROBOT_PROGRAMMES
 
@@ -75,8 +75,9 @@ def _sweep(setup: Setup, *, first: float, last: float, rate: float) -> Corners:
     return chain(first, [Piece(duration, last), *([Piece(duration, first)] if setup.closed else [])])
 
 
-def _strokes(setup: Setup, *, angle: float, **values: float) -> Corners:
-    return chain(0.0, [piece for way in (angle, -angle) for piece in stroke(setup.reducer, way, **values)])
+def _strokes(setup: Setup, *, angle: float, speed: float, acceleration: float, pause: float) -> Corners:
+    there_and_back = [(angle, speed), (-angle, speed)]
+    return chain(0.0, strokes(setup.reducer, there_and_back, acceleration=acceleration, pause=pause))
 
 
 def _profile(_: Setup, *, times: Sequence[float], speeds: Sequence[float]) -> Corners:

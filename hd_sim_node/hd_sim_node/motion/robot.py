@@ -10,7 +10,18 @@ from hd_monitor.parameter import number, table
 from hd_monitor.reducer import Reducer
 
 from ..randomness import generator
-from .kind import Corners, Piece, ProgrammeKind, Setup, chain, rate_parameter, speed_parameter, speeds_between, stroke
+from .kind import (
+    Corners,
+    Piece,
+    ProgrammeKind,
+    Setup,
+    chain,
+    rate_parameter,
+    speed_parameter,
+    speeds_between,
+    stroke,
+    strokes,
+)
 
 GRIP_TIME = 0.1
 """Time [s] in which the gripper takes the payload or releases it, at standstill."""
@@ -29,8 +40,8 @@ def _picking(
     pick_pause: float,
     place_pause: float,
 ) -> list[Piece]:
-    there = stroke(reducer, angle, speed=loaded_speed, acceleration=acceleration, carried=1.0)
-    back = stroke(reducer, -angle, speed=empty_speed, acceleration=acceleration)
+    there = stroke(reducer, angle, loaded_speed, acceleration, carried=1.0)
+    back = stroke(reducer, -angle, empty_speed, acceleration)
     pick = [Piece(GRIP_TIME, 0.0, 1.0), Piece(pick_pause - GRIP_TIME, 0.0, 1.0)]
     place = [Piece(GRIP_TIME, 0.0), Piece(place_pause - GRIP_TIME, 0.0)]
     return [*pick, *there, *place, *back]
@@ -57,8 +68,7 @@ def _wander(
         place += step
         signed.append(step)
     route = [*signed, *(-step for step in reversed(signed))]
-    strokes = (stroke(reducer, step, speed=speed, acceleration=acceleration, pause=pause) for step in route)
-    return [piece for pieces in strokes for piece in pieces]
+    return strokes(reducer, [(step, speed) for step in route], acceleration=acceleration, pause=pause)
 
 
 def _short_strokes(
@@ -83,8 +93,7 @@ def _commissioning(
     for speed in speeds_between(first, last, step):
         moves += [(2.0 * angle, speed), (-2.0 * angle, speed)]
     moves.append((angle, first))
-    strokes = (stroke(setup.reducer, a, speed=v, acceleration=acceleration, pause=pause) for a, v in moves)
-    return chain(0.0, [piece for pieces in strokes for piece in pieces])
+    return chain(0.0, strokes(setup.reducer, moves, acceleration=acceleration, pause=pause))
 
 
 def _day(setup: Setup, *, hours: float, section: float, travel: float, speed: float, acceleration: float) -> Corners:
@@ -94,8 +103,9 @@ def _day(setup: Setup, *, hours: float, section: float, travel: float, speed: fl
     while True:
         cycle = np.array(_task(task, random, setup.reducer, travel=travel, speed=speed, acceleration=acceleration))
         length = cycle[:, 0].sum()
-        repeats = int(min(left, 60.0 * section * random.uniform(0.5, 1.5)) / length)
-        if not repeats:
+        wanted = max(1, round(60.0 * section * random.uniform(0.5, 1.5) / length))
+        repeats = min(wanted, int(left / length))
+        if repeats == 0:
             break
         done.append(np.tile(cycle, (repeats, 1)))
         left -= repeats * length
@@ -127,11 +137,8 @@ def _task(
         return _wander(random, reducer, arcs, travel=travel, speed=peak, acceleration=acceleration, pause=pause)
     if task == "slow moves":
         slow = speed * share(0.05, 0.1)
-        return [
-            piece
-            for angle in (0.5, -1.0, 0.5)
-            for piece in stroke(reducer, angle * travel, speed=slow, acceleration=acceleration, pause=1.0)
-        ]
+        moves = [(part * travel, slow) for part in (0.5, -1.0, 0.5)]
+        return strokes(reducer, moves, acceleration=acceleration, pause=1.0)
     return [Piece(random.uniform(20.0, 200.0), 0.0)]
 
 

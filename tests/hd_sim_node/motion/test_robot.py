@@ -175,6 +175,10 @@ class TestDay:
     def test_begins_with_work(self):
         assert build("day").strokes(60.0) > 5
 
+    def test_works_to_the_end_however_short_its_sections(self):
+        programme = build("day", hours=2.0, section=0.1)
+        assert programme.strokes(7200.0 - 300.0) < programme.strokes(7200.0) - 1
+
     def test_holds_few_speeds_however_long_it_is(self):
         """Each is searched for instability at the start."""
         assert build("day", hours=240.0).visited_speeds().size < 150
