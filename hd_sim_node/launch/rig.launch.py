@@ -15,7 +15,11 @@ from launch import LaunchDescription
 PARAMETERS = {
     "drive": (str, "preset of the parameters that are not given: paper, catalogue or worn"),
     "defect": (str, "the bad spline: flexspline, circular_spline, both, none or custom"),
-    "programme": (str, "what the wave generator does: dwell, fixed, sweep, strokes or profile"),
+    "programme": (
+        str,
+        "what the wave generator does: dwell, fixed, sweep, strokes, profile, pick_and_place, short_strokes, commissioning "
+        "or day",
+    ),
     "publish": (str, "form of the torsional acceleration: block, samples, both or none"),
     "time_scale": (float, "simulated seconds in a second"),
     "duration": (float, "simulated time [s] after which the rig ends; 0: as long as the programme"),

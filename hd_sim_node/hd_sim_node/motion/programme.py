@@ -184,7 +184,7 @@ class SpeedProgramme:
     def _carried(self, piece: IntArray, since: FloatArray) -> FloatArray | float:
         if not self._carries:
             return 0.0
-        start, end = self.carried[piece], np.append(self.carried, self.carried[-1])[piece + 1]
+        start, end = self.carried[piece], self.carried[np.minimum(piece + 1, self.carried.size - 1)]
         return np.asarray(start + 0.5 * (end - start) * (1.0 - np.cos(np.pi / self._lengths[piece] * since)))
 
     @cached_property
