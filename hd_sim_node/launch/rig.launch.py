@@ -17,8 +17,8 @@ PARAMETERS = {
     "defect": (str, "the bad spline: flexspline, circular_spline, both, none or custom"),
     "programme": (
         str,
-        "what the wave generator does: dwell, fixed, sweep, strokes, profile, pick_and_place, short_strokes, commissioning "
-        "or day",
+        "what the wave generator does: dwell, fixed, sweep, strokes, profile, pick_and_place, short_strokes, "
+        "commissioning or day",
     ),
     "publish": (str, "form of the torsional acceleration: block, samples, both or none"),
     "time_scale": (float, "simulated seconds in a second"),
