@@ -45,9 +45,8 @@ class Parameter:
         if kind is float and isinstance(value, int) and not isinstance(value, bool):
             value = float(value)
         if not isinstance(value, kind) or (kind is int and isinstance(value, bool)):
-            raise ParameterError(
-                f"{self.name} = {value!r} has the wrong type; give a {kind.__name__} ({self.description})"
-            )
+            wanted = f"one of: {', '.join(self.choices)}" if self.choices else f"a {kind.__name__} ({self.description})"
+            raise ParameterError(f"{self.name} = {value!r} has the wrong type; give {wanted}")
         if self.choices and value not in self.choices:
             raise ParameterError(f"{self.name} = {value!r} is unknown; choose one of: {', '.join(self.choices)}")
         if isinstance(value, (int, float)) and not isinstance(value, bool):

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from hd_monitor.parameter import Parameter, choice, number, parameters_of, plain, table
 from hd_monitor.settings import NODE_PARAMETERS as MONITOR_NODE_PARAMETERS
 from hd_monitor.settings import PARAMETERS as MONITOR_PARAMETERS
-from hd_monitor.settings.groups import AXES
 
 from .drive.catalogue import DRIVES, PAPER
 from .drive.defects import CUSTOM, DEFECTS
@@ -14,6 +13,11 @@ from .drive.surroundings import ChangingInertia, MotorRipple
 from .messages.transport import TransportSettings
 from .motion.programmes import PROGRAMMES
 from .sensing.accelerometer import SensorSettings
+from .sensing.clock import ClockSettings
+from .sensing.effort import EffortSettings
+from .sensing.fault import FaultSettings
+from .sensing.filter import FilterSettings
+from .sensing.imu import ImuSettings
 from .sensing.joint import JointSettings
 
 PUBLISHED = ("block", "samples", "both", "none")
@@ -57,12 +61,10 @@ class GeneralSettings:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class MountingSettings:
-    """Those parameters ``sensor.*`` that say how the accelerometer is mounted and sampled."""
+class SamplingSettings:
+    """Those parameters ``sensor.*`` that say how often the accelerometer is sampled, and name it."""
 
-    rate: float = number(1000.0, "Hz", 1.0, 100_000.0, "sampling rate of the accelerometer")
-    radius: float = number(0.55, "m", 0.0, 100.0, "distance of the accelerometer from the joint's axis")
-    imu_axis: str = choice("y", AXES, "axis of the IMU that points along the motion (tangential)")
+    rate: float = number(1000.0, "Hz", 1.0, 100_000.0, "sampling rate of the accelerometer, by the host's clock")
     frame_id: str = plain("hd_rig_sensor", "frame_id of the accelerometer's messages")
 
 
@@ -93,18 +95,23 @@ PARAMETERS = (
     ),
     *parameters_of(MotorRipple, "torque."),
     *parameters_of(ChangingInertia, "inertia."),
-    *parameters_of(MountingSettings, "sensor."),
-    *parameters_of(SensorSettings, "sensor."),
+    *(
+        parameter
+        for group in (SamplingSettings, FilterSettings, ImuSettings, SensorSettings, FaultSettings, ClockSettings)
+        for parameter in parameters_of(group, "sensor.")
+    ),
     *parameters_of(TransportSettings, "transport."),
     *parameters_of(JointSettings, "joint_states."),
+    *parameters_of(EffortSettings, "joint_states."),
 )
 """Parameters of the rig: what is simulated."""
 
 
 CHANGEABLE = (
     *("defect", "flexspline.", "circular_spline.", "dynamics.", "torque.", "inertia.", "rigid_body", "transport."),
-    *("sensor.noise", "sensor.offset", "sensor.spike", "sensor.full_scale", "sensor.resolution", "sensor.stuck_after"),
-    *("sensor.jitter", "sensor.delay", "joint_states.effort", "joint_states.velocity", "joint_states.resolution"),
+    *("sensor.gain", "sensor.noise", "sensor.offset", "sensor.spike", "sensor.full_scale", "sensor.resolution"),
+    *("sensor.fault", "sensor.clock_offset", "sensor.jitter", "joint_states.effort", "joint_states.velocity"),
+    *("joint_states.resolution", "joint_states.wrapped", "joint_states.jitter", "joint_states.delay"),
     "unstable",
 )
 """Parameters that begin so may be changed while the rig runs; all others decide how it is set up."""

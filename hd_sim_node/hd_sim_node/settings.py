@@ -19,8 +19,13 @@ from .drive.surroundings import ChangingInertia, MotorRipple, Surroundings
 from .messages.transport import TransportSettings
 from .motion.programme import Ripple, SpeedProgramme
 from .motion.programmes import build_programme
-from .parameters import PARAMETERS, GeneralSettings, MountingSettings
+from .parameters import PARAMETERS, GeneralSettings, SamplingSettings
 from .sensing.accelerometer import SensorSettings
+from .sensing.clock import ClockSettings
+from .sensing.effort import EffortSettings
+from .sensing.fault import FaultSettings
+from .sensing.filter import FilterSettings
+from .sensing.imu import ImuSettings
 from .sensing.joint import JointSettings
 
 
@@ -50,6 +55,7 @@ class RigSettings:
         settings = cls(check_all(PARAMETERS, {**preset(own.get("drive")), **own}, owner="the rig"))
         for part in ("model", "programme", "surroundings"):  # what fits together is seen here, not at the first sample
             getattr(settings, part)
+        settings.clock.check(settings.sampling.rate)
         return settings
 
     @property
@@ -58,9 +64,9 @@ class RigSettings:
         return fill_group(self.values, "", GeneralSettings)
 
     @property
-    def mounting(self) -> MountingSettings:
-        """How the accelerometer is mounted and sampled."""
-        return fill_group(self.values, "sensor", MountingSettings)
+    def sampling(self) -> SamplingSettings:
+        """How the accelerometer is sampled."""
+        return fill_group(self.values, "sensor", SamplingSettings)
 
     @property
     def remarks(self) -> list[str]:
@@ -134,13 +140,38 @@ class RigSettings:
 
     @property
     def sensor(self) -> SensorSettings:
-        """The accelerometer."""
+        """What the accelerometer does to the signal."""
         return fill_group(self.values, "sensor", SensorSettings)
+
+    @property
+    def filter(self) -> FilterSettings:
+        """The accelerometer's low-pass filter."""
+        return fill_group(self.values, "sensor", FilterSettings)
+
+    @property
+    def imu(self) -> ImuSettings:
+        """How the IMU sits on the link."""
+        return fill_group(self.values, "sensor", ImuSettings)
+
+    @property
+    def fault(self) -> FaultSettings:
+        """How the accelerometer fails."""
+        return fill_group(self.values, "sensor", FaultSettings)
+
+    @property
+    def clock(self) -> ClockSettings:
+        """The accelerometer's clock."""
+        return fill_group(self.values, "sensor", ClockSettings)
 
     @property
     def joint(self) -> JointSettings:
         """The joint's encoder and driver."""
         return fill_group(self.values, "joint_states", JointSettings)
+
+    @property
+    def effort(self) -> EffortSettings:
+        """The effort that the joint's driver reports."""
+        return fill_group(self.values, "joint_states", EffortSettings)
 
     @property
     def transport(self) -> TransportSettings:

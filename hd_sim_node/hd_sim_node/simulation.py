@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from itertools import repeat
 from operator import itemgetter
 
+import numpy as np
+
 from hd_monitor import contract
 from hd_monitor.arrays import FloatArray, IntArray
 from hd_monitor.contract import Block
@@ -15,7 +17,10 @@ from .drive.chunk import RigChunk
 from .drive.rig import Rig
 from .drive.stability import check_stability
 from .messages.transport import Dispatch, Transport, TransportSettings
-from .sensing.accelerometer import Accelerometer, nanoseconds
+from .sensing.accelerometer import Accelerometer
+from .sensing.clock import Clock, nanoseconds
+from .sensing.filter import AntiAliasing
+from .sensing.imu import Imu, ImuReadings
 from .sensing.joint import Joint, JointBatch
 from .settings import RigSettings
 
@@ -29,13 +34,15 @@ class Stretch:
     Attributes
     ----------
     motion : RigChunk
-        What truly happened.
+        What truly happened at the sampling instants.
     samples : ndarray, shape (samples,)
         What the accelerometer put out [rad/s²].
     stamps : ndarray of int64, shape (samples,)
-        Its stamps [ns].
+        Their stamps [ns] as single samples.
     blocks : tuple of Block
         The same samples in blocks.
+    imu : ImuReadings or None
+        If they are published.
     joint : JointBatch
     dispatch : dict of str to Dispatch
         By topic, of those published: which message (row of `samples`, `blocks` or `joint`) goes out when.
@@ -45,6 +52,7 @@ class Stretch:
     samples: FloatArray
     stamps: IntArray
     blocks: tuple[Block, ...]
+    imu: ImuReadings | None
     joint: JointBatch
     dispatch: dict[str, Dispatch]
 
@@ -79,16 +87,19 @@ class Simulation:
     def __init__(self, settings: RigSettings) -> None:
         self.warning = check_stability(settings.model, settings.programme, settings.general.unstable)
         self.settings = settings
-        general, rate, seed = settings.general, settings.mounting.rate, settings.general.seed
+        general, rate, seed = settings.general, settings.sampling.rate, settings.general.seed
+        self._filter = AntiAliasing(settings.filter, rate=rate)
         self._rig = Rig(
             settings.model,
             settings.programme,
-            rate=rate,
+            rate=rate * self._filter.oversampling,
             start_angle=settings.start_angle,
             surroundings=settings.surroundings,
         )
-        self._accelerometer = Accelerometer(settings.sensor, rate=rate, seed=seed)
-        self._joint = Joint(self._rig, settings.joint, seed=seed)
+        self._accelerometer = Accelerometer(settings.sensor, settings.fault, rate=rate, seed=seed)
+        self._imu = Imu(settings.imu, settings.fault, seed=seed) if general.publish_imu else None
+        self._clock = Clock(settings.clock, rate=rate, seed=seed)
+        self._joint = Joint(self._rig, settings.joint, settings.effort, seed=seed)
         self._block_size = general.block_size
         self._sequence = 0
         published = {
@@ -113,7 +124,8 @@ class Simulation:
         """Messages per simulated second on a topic."""
         if topic == contract.JOINT_STATES:
             return self.settings.joint.rate
-        return self._rig.rate / (self._block_size if topic == contract.TORSIONAL_ACCELERATION_BLOCK else 1)
+        rate = self.settings.sampling.rate
+        return rate / (self._block_size if topic == contract.TORSIONAL_ACCELERATION_BLOCK else 1)
 
     def change(self, settings: RigSettings) -> None:
         """Change defect, torque, surroundings, sensor or transport; the motion continues.
@@ -130,7 +142,11 @@ class Simulation:
         self._rig.model = settings.model
         self._rig.surroundings = settings.surroundings
         self._accelerometer.settings = settings.sensor
-        self._joint.settings = settings.joint
+        self._accelerometer.fault.settings = settings.fault
+        if self._imu is not None:
+            self._imu.fault.settings = settings.fault
+        self._clock.settings = settings.clock
+        self._joint.settings, self._joint.effort.settings = settings.joint, settings.effort
         for topic, transport in self._transports.items():
             if topic != contract.JOINT_STATES:
                 transport.settings = settings.transport
@@ -147,26 +163,32 @@ class Simulation:
         self._left -= blocks
         size = self._block_size
         first, self._sequence = self._sequence, self._sequence + blocks
-        motion = self._rig.advance(blocks * size)
-        samples, stamps = self._accelerometer.measure(motion), self._accelerometer.stamps(motion)
-        joint = self._joint.report(motion)
+        fine = self._rig.advance(blocks * size * self._filter.oversampling)
+        motion, felt, joint = fine.thinned(self._filter.oversampling), self._filter.thin(fine), self._joint.report(fine)
+        samples, stamps = self._accelerometer.measure(felt), self._clock.stamp(motion)
+        imu = None
+        if self._imu is not None:
+            settings = self.settings
+            imu = self._imu.measure(felt, samples, surroundings=settings.surroundings, gain=settings.sensor.gain)
         instants = nanoseconds(motion.times)
+        read = np.minimum(stamps.due, instants[-1])  # a stretch sends its own messages, those of a FIFO half full too
         due = {
             contract.TORSIONAL_ACCELERATION_BLOCK: instants[size - 1 :: size],
-            contract.TORSIONAL_ACCELERATION: instants,
-            contract.IMU: instants,
+            contract.TORSIONAL_ACCELERATION: read,
+            contract.IMU: read,
             contract.JOINT_STATES: nanoseconds(joint.times),
         }
         return Stretch(
             motion=motion,
             samples=samples,
-            stamps=stamps,
+            stamps=stamps.read,
             blocks=tuple(
-                Block(stamp, 1.0 / self._rig.rate, first + number, row)
+                Block(stamp, self._clock.period, first + number, row)
                 for number, (stamp, row) in enumerate(
-                    zip(stamps[::size].tolist(), samples.reshape(-1, size), strict=True)
+                    zip(stamps.sampled[::size].tolist(), samples.reshape(-1, size), strict=True)
                 )
             ),
+            imu=imu,
             joint=joint,
             dispatch={topic: transport.dispatch(due[topic]) for topic, transport in self._transports.items()},
         )

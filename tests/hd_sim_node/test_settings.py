@@ -169,12 +169,29 @@ class TestPick:
             pick({"zzz": 1.0})
 
 
+@pytest.mark.parametrize("old", [True, False])
+def test_a_velocity_given_as_before_is_refused_with_the_words_allowed(old):
+    with pytest.raises(ParameterError, match=r"joint_states\.velocity = (True|False) .* reported, missing, zero"):
+        RigSettings.from_mapping({"joint_states.velocity": old})
+
+
+def test_a_fifo_must_be_read_faster_than_it_fills():
+    with pytest.raises(ParameterError, match=r"sensor\.fifo_spacing"):
+        RigSettings.from_mapping({"sensor.fifo": 8, "sensor.rate": 100_000.0})
+
+
 def test_what_may_change_while_it_runs_exists():
     names = [parameter.name for parameter in PARAMETERS]
     for prefix in CHANGEABLE:
         assert any(name.startswith(prefix) for name in names), prefix
 
 
-@pytest.mark.parametrize("name", ["programme", "sensor.rate", "seed", "block_size", "publish", "joint_states.rate"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        *("programme", "seed", "block_size", "publish", "joint_states.rate", "sensor.rate", "sensor.bandwidth"),
+        *("sensor.filter_order", "sensor.clock_drift", "sensor.fifo", "sensor.fifo_spacing", "sensor.cross_axis"),
+    ],
+)
 def test_what_is_set_up_once_may_not(name):
     assert not name.startswith(CHANGEABLE)

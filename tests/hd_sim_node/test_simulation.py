@@ -71,6 +71,83 @@ def test_the_block_size_does_not_change_the_samples(block_size):
     np.testing.assert_allclose(other[:common], plain[:common], atol=1e-9)
 
 
+EVERYTHING_ON = {
+    "sensor__noise": 0.2,
+    "sensor__bandwidth": 150.0,
+    "sensor__filter_order": 4,
+    "sensor__gain": -1.1,
+    "sensor__cross_axis": 0.02,
+    "sensor__clock_drift": 80.0,
+    "sensor__jitter": 1e-4,
+    "sensor__fifo": 24,
+    "sensor__fault": "dying",
+    "sensor__fault_after": 0.5,
+    "sensor__fault_time": 2.0,
+    "joint_states__side": "output",
+    "joint_states__wrapped": True,
+    "joint_states__velocity": "filtered",
+    "joint_states__velocity_noise": 0.01,
+    "joint_states__delay": 0.005,
+    "joint_states__effort": "reaction",
+    "joint_states__effort_rate": 13.0,
+    "joint_states__effort_noise": 0.1,
+}
+
+
+@pytest.mark.parametrize("block_size", [1, 37, 512])
+def test_stretches_do_not_change_what_any_sensor_puts_out(block_size):
+    def readings(size):
+        stretches = list(simulate(publish_imu=True, seed=3, block_size=size, duration=2.1, **EVERYTHING_ON))
+        sensor = [np.column_stack([s.samples, s.stamps, *s.imu]) for s in stretches]
+        joint = [
+            np.column_stack([s.joint.stamps, s.joint.position, s.joint.velocity, s.joint.effort]) for s in stretches
+        ]
+        return np.concatenate(sensor), np.concatenate(joint)
+
+    for one, other in zip(readings(50), readings(block_size), strict=True):
+        common = min(len(one), len(other))
+        assert common > 100
+        np.testing.assert_allclose(other[:common], one[:common], rtol=1e-9, atol=1e-8)
+
+
+def test_the_block_tells_the_period_that_the_sensors_clock_believes():
+    blocks = [block for s in simulate(sensor__clock_drift=100.0, sensor__clock_offset=5.0) for block in s.blocks]
+    assert [block.period for block in blocks] == pytest.approx([1.0001e-3] * 40, rel=1e-12)
+    assert [block.stamp for block in blocks] == [5_000_000_000 + n * 50_005_000 for n in range(40)]
+
+
+def test_a_fifo_bunches_samples_and_leaves_blocks_alone():
+    given = {"publish": "both", "publish_imu": True, "duration": 1.0}
+    plain, bunched = simulate(**given), simulate(sensor__fifo=50, **given)
+    for one, other in zip(plain, bunched, strict=True):
+        assert [block.stamp for block in other.blocks] == [block.stamp for block in one.blocks]
+        block = contract.TORSIONAL_ACCELERATION_BLOCK
+        np.testing.assert_array_equal(other.dispatch[block], one.dispatch[block])
+        for topic in (contract.TORSIONAL_ACCELERATION, contract.IMU):
+            due, row = other.dispatch[topic]
+            assert row.tolist() == list(range(len(other.samples)))
+            np.testing.assert_array_equal(due[:49], other.stamps[:49])
+            assert np.all(np.diff(due) >= 0)
+            assert np.all(due >= one.dispatch[topic].due)
+
+
+def test_a_half_full_fifo_is_sent_with_its_stretch():
+    stretches = list(simulate(publish="samples", sensor__fifo=4096, duration=1.0))
+    sent = [row for s in stretches for row in s.dispatch[contract.TORSIONAL_ACCELERATION].row]
+    assert len(sent) == 1000
+    assert stretches[-1].stamps[0] == 4_095_000_000 + 750 * 100_000
+
+
+def test_the_bandwidth_takes_from_the_samples_and_not_from_the_motion_or_the_joint():
+    plain, narrow = (list(simulate(sensor__bandwidth=b, joint_states__side="output")) for b in (0.0, 5.0))
+    for one, other in zip(plain, narrow, strict=True):
+        np.testing.assert_allclose(other.motion.times, one.motion.times, rtol=1e-14)
+        np.testing.assert_allclose(other.motion.acceleration, one.motion.acceleration, atol=1e-4)
+        np.testing.assert_allclose(other.joint.position, one.joint.position, atol=1e-8)
+    settled = [np.concatenate([s.samples for s in run])[1000:] for run in (plain, narrow)]
+    assert settled[1].std() < 0.05 * settled[0].std()
+
+
 def test_ends_with_the_programme_in_whole_blocks():
     assert sum(s.samples.size for s in simulate(duration=0.777, block_size=50)) == 750
     assert sum(s.samples.size for s in simulate(duration=0.01, block_size=50)) == 50
@@ -161,6 +238,16 @@ class TestChanges:
         assert stretch.dispatch[contract.TORSIONAL_ACCELERATION_BLOCK].row.size == 0
         assert stretch.dispatch[contract.JOINT_STATES].row.size > 0
         assert stretch.joint.effort is None
+
+    def test_a_sensor_may_fail_and_recover_while_it_runs(self):
+        simulation = simulate(publish_imu=True)
+        stretches = [simulation.advance()]
+        for fault in ("stuck", "none"):
+            simulation.change(RigSettings.from_mapping(BASE | {"sensor.fault": fault, "publish_imu": True}))
+            stretches.append(simulation.advance())
+        before, stuck, after = (np.column_stack([s.samples, *s.imu]) for s in stretches)
+        assert np.all(stuck == before[-1])
+        assert np.unique(after[:, 0]).size == len(after)
 
     def test_a_refused_change_changes_nothing(self):
         simulation = simulate(fixed__speed=3300.0)

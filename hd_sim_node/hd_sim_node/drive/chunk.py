@@ -1,6 +1,7 @@
 """A stretch of the rig's motion, as the integration leaves it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
+from typing import Self
 
 from scipy.interpolate import CubicHermiteSpline
 
@@ -41,6 +42,13 @@ class RigChunk:
     def __len__(self) -> int:
         """Return the number of samples."""
         return int(self.times.size)
+
+    def thinned(self, every: int) -> Self:
+        """Keep every `every`-th sample of a stretch that begins with such a one."""
+        if every == 1:
+            return self
+        columns = [field.name for field in fields(self) if not field.name.startswith("_") and field.name != "first"]
+        return replace(self, first=self.first // every, **{name: getattr(self, name)[::every] for name in columns})
 
     def vibration_at(self, times: FloatArray) -> Response:
         """θ [rad] and θ' [rad/s] at `times` [s] within this stretch, by the integration's own cubic pieces."""

@@ -11,7 +11,6 @@ from hd_monitor.arrays import IntArray
 from hd_monitor.contract import NANOSECONDS
 from hd_monitor.sources import INPUT_SOURCES
 
-from ..sensing.imu import imu_readings
 from ..settings import RigSettings
 from ..simulation import Stretch
 
@@ -37,22 +36,17 @@ def encode(stretch: Stretch, settings: RigSettings, epoch: int) -> dict[str, lis
 
 def _samples(stretch: Stretch, settings: RigSettings, epoch: int) -> list[Column]:
     vectors = np.zeros((len(stretch.samples), 6))  # linear, angular
-    vectors[:, 1] = settings.mounting.radius * stretch.samples
+    vectors[:, 1] = settings.imu.radius * stretch.samples
     vectors[:, 5] = stretch.samples
-    return [*_header(stretch.stamps + epoch, settings.mounting.frame_id), vectors]
+    return [*_header(stretch.stamps + epoch, settings.sampling.frame_id), vectors]
 
 
 def _imu(stretch: Stretch, settings: RigSettings, epoch: int) -> list[Column]:
-    mounting, unknown = settings.mounting, np.zeros((1, 9))
-    force, turning = imu_readings(
-        stretch.motion,
-        stretch.samples,
-        radius=mounting.radius,
-        axis=mounting.imu_axis,
-        surroundings=settings.surroundings,
-    )
+    if stretch.imu is None:
+        raise ValueError("the stretch holds no readings of an IMU; simulate with publish_imu")
+    (force, turning), unknown = stretch.imu, np.zeros((1, 9))
     orientation = np.array([[0.0, 0.0, 0.0, 1.0, -1.0, *[0.0] * 8]])  # REP-145: none known, gravity included
-    return [*_header(stretch.stamps + epoch, mounting.frame_id), orientation, turning, unknown, force, unknown]
+    return [*_header(stretch.stamps + epoch, settings.sampling.frame_id), orientation, turning, unknown, force, unknown]
 
 
 def _joint_states(stretch: Stretch, settings: RigSettings, epoch: int) -> list[Column]:
