@@ -41,10 +41,10 @@ def gauss_times(times: npt.ArrayLike) -> FloatArray:
 
 
 class Oscillator:
-    """Solver of ``x'' + 2ζωn x' + ωn² (1 + k(t)) x = u(t)`` for a given k(t) and any number of inputs u(t).
+    """Solver of ``x'' + c(t) x' + ωn² (1 + k(t)) x = u(t)`` for given k(t), c(t) and any number of inputs u(t).
 
-    The transition matrices depend on k(t) alone; they are computed once and reused by every call of :meth:`respond`
-    (identification needs a dozen inputs for one k: the sensitivities obey the same equation).
+    The transition matrices depend on k(t) and c(t) alone; they are computed once and reused by every call of
+    :meth:`respond` (identification needs a dozen inputs for one k: the sensitivities obey the same equation).
 
     Parameters
     ----------
@@ -53,6 +53,8 @@ class Oscillator:
         Relative stiffness fluctuation k at the two Gauss points of every step (see :func:`gauss_times`).
     step : float or array_like, shape (steps,)
         Length of the steps [s].
+    damping : array_like, shape (2, steps), optional
+        Damping c [1/s] at the Gauss points; by default that of `dynamics`, 2ζωn, throughout.
 
     Raises
     ------
@@ -81,7 +83,9 @@ class Oscillator:
 
     __slots__ = ("_longest_block", "_omega", "_propagator", "_transition", "_weights", "steps")
 
-    def __init__(self, dynamics: Dynamics, fluctuation: npt.ArrayLike, step: npt.ArrayLike) -> None:
+    def __init__(
+        self, dynamics: Dynamics, fluctuation: npt.ArrayLike, step: npt.ArrayLike, damping: npt.ArrayLike | None = None
+    ) -> None:
         k = np.asarray(fluctuation, dtype=np.float64)
         if k.ndim != 2 or k.shape[0] != 2:
             raise ParameterError(
@@ -89,7 +93,8 @@ class Oscillator:
             )
         self.steps: int = k.shape[1]
         self._omega = omega = dynamics.angular_frequency
-        damping = -2.0 * dynamics.damping_ratio * omega
+        constant = -2.0 * dynamics.damping_ratio * omega
+        d1, d2 = (constant, constant) if damping is None else -np.asarray(damping, dtype=np.float64)
         h = np.broadcast_to(np.asarray(step, dtype=np.float64), (self.steps,))
         if self.steps and not (h.min() > 0.0 and h.max() * omega <= _LARGEST_PHASE_STEP):
             raise ParameterError(
@@ -98,22 +103,24 @@ class Oscillator:
             )
         # Scaled system matrix at the Gauss points: [[0, ωn], [a, d]]. Exponent: h (A1 + A2)/2 + (√3/12) h² [A2, A1].
         a1, a2 = -omega * (1.0 + k[0]), -omega * (1.0 + k[1])
+        mean, change = 0.5 * (d1 + d2), _COMMUTATOR * h * (d1 - d2)
         skew = _COMMUTATOR * h * (a1 - a2)
         w00 = h * omega * skew
         exponent = np.empty((2, 2, self.steps))
         exponent[0, 0] = w00
-        exponent[0, 1] = h * omega
-        exponent[1, 0] = h * (0.5 * (a1 + a2) + damping * skew)
-        exponent[1, 1] = h * damping - w00
+        exponent[0, 1] = h * omega * (1.0 + change)
+        exponent[1, 0] = h * (0.5 * (a1 + a2) * (1.0 - change) + mean * skew)
+        exponent[1, 1] = h * mean - w00
         self._transition, input_map = _exponential_and_phi(exponent)
         # Vector part of the exponent: h (b1 + b2)/2 + (√3/12) h² (A2 b1 - A1 b2) with b = (0, u). The input map turns
         # it into a step's contribution to the state: a weight for u at either Gauss point, for either component.
         slope = _COMMUTATOR * h * h
-        parts = [(sign * omega * slope, 0.5 * h + sign * damping * slope) for sign in (1.0, -1.0)]
+        parts = [(sign * omega * slope, 0.5 * h + sign * d * slope) for sign, d in ((1.0, d2), (-1.0, d1))]
         self._weights = np.stack([input_map[:, 0] * first + input_map[:, 1] * second for first, second in parts])
         # Bound on the logarithm of the condition of one step's matrix, from its logarithmic norms
         largest = float(np.abs(k).max(initial=0.0))
-        condition = 2.0 * omega * float(h.max(initial=0.0)) * math.hypot(dynamics.damping_ratio, 0.5 * largest)
+        strongest = 0.5 / omega * float(np.abs([d1, d2]).max(initial=0.0))
+        condition = 2.0 * omega * float(h.max(initial=0.0)) * math.hypot(strongest, 0.5 * largest)
         self._longest_block = _LARGEST_CONDITION / max(condition, 1e-12)
         self._propagator: _Propagator | None = None  # the stability analysis needs none
 

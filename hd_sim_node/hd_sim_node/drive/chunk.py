@@ -3,10 +3,12 @@
 from dataclasses import dataclass, fields, replace
 from typing import Self
 
+import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
 from hd_monitor.arrays import FloatArray
-from hd_monitor.model import Response
+
+from .equation import State
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -21,6 +23,8 @@ class RigChunk:
         Sampling instants [s] since the start.
     angle, speed, rigid_acceleration : ndarray, shape (samples,)
         Output angle q [rad], its rate [rad/s], and what an accelerometer feels of the motion itself [rad/s²].
+    transmission_error : ndarray, shape (samples,)
+        e [rad].
     displacement, velocity, acceleration : ndarray, shape (samples,)
         Torsional vibration θ [rad], θ' [rad/s], θ'' [rad/s²].
     torque : ndarray, shape (samples,)
@@ -32,12 +36,13 @@ class RigChunk:
     angle: FloatArray
     speed: FloatArray
     rigid_acceleration: FloatArray
+    transmission_error: FloatArray
     displacement: FloatArray
     velocity: FloatArray
     acceleration: FloatArray
     torque: FloatArray
     _fine_times: FloatArray
-    _fine: Response
+    _fine: State
 
     def __len__(self) -> int:
         """Return the number of samples."""
@@ -50,7 +55,8 @@ class RigChunk:
         columns = [field.name for field in fields(self) if not field.name.startswith("_") and field.name != "first"]
         return replace(self, first=self.first // every, **{name: getattr(self, name)[::every] for name in columns})
 
-    def vibration_at(self, times: FloatArray) -> Response:
-        """θ [rad] and θ' [rad/s] at `times` [s] within this stretch, by the integration's own cubic pieces."""
-        spline = CubicHermiteSpline(self._fine_times, self._fine.displacement, self._fine.velocity)
-        return Response(spline(times), spline(times, nu=1))
+    def vibration_at(self, times: FloatArray) -> State:
+        """State at `times` [s] within this stretch, by the integration's own cubic pieces (hysteresis: by lines)."""
+        displacement, velocity, hysteresis = self._fine
+        spline = CubicHermiteSpline(self._fine_times, displacement, velocity)
+        return State(spline(times), spline(times, nu=1), np.interp(times, self._fine_times, hysteresis))

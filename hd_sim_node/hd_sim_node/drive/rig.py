@@ -1,23 +1,35 @@
-"""The rig in motion: the parametric model integrated along a speed programme, a stretch at a time."""
+"""The rig in motion: the drive integrated along a speed programme, a stretch at a time."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import KW_ONLY, dataclass, field, replace
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from hd_monitor.arrays import FloatArray, IntArray
 from hd_monitor.errors import ParameterError
-from hd_monitor.model import Oscillator, ParametricModel, Response
+from hd_monitor.model import Oscillator, ParametricModel
 from hd_monitor.model.oscillator import GAUSS_OFFSETS
 from hd_monitor.reducer import WAVE_GENERATOR_LOBES
 
 from ..motion.programme import SpeedProgramme
 from .chunk import RigChunk
+from .effects import Effects, coefficients, grown, laws
+from .equation import Coefficients, State, march
+from .steps import Steps
 from .surroundings import Motion, Surroundings
 
 PHASE_STEP = 0.25
-"""Longest integration step, in radians of the fastest of natural vibration and stiffness harmonics: good to 1e-6."""
+"""Longest step of the scan, in radians of the fastest of natural vibration and stiffness harmonics: good to 1e-6."""
+
+MARCH_NATURAL, MARCH_FORCED, MARCH_FRICTION = 0.08, 0.3, 0.2
+"""Longest step where the drive is not linear, for errors of 1e-5 of θ'': in radians of natural vibration, in radians
+of the fastest excitation, and in time constants of friction at standstill."""
+
+_ROW_NUMBERS = 400_000
+"""Steps times drives whose coefficients are held at once: some 50 MB."""
 
 
 @dataclass(eq=False)
@@ -29,13 +41,14 @@ class Rig:
     Parameters
     ----------
     model : ParametricModel
-        May be replaced while it runs (attribute `model`): the state carries on.
     programme : SpeedProgramme
     rate : float
         Samples per second [Hz]. The integration takes finer steps where accuracy requires it.
     start_angle : float
         Output angle q [rad] at the start.
     surroundings : Surroundings, optional
+    effects : Effects, optional
+        What the model leaves out. Like model and surroundings it may be replaced while the rig runs.
 
     Raises
     ------
@@ -59,8 +72,9 @@ class Rig:
     rate: float
     start_angle: float = 0.0
     surroundings: Surroundings = field(default_factory=Surroundings)
+    effects: Effects = field(default_factory=Effects)
     _next: int = field(default=0, init=False)
-    _state: tuple[float, float] | None = field(default=None, init=False)
+    _state: State | None = field(default=None, init=False)
 
     def __post_init__(self) -> None:
         """Check the rate."""
@@ -100,12 +114,24 @@ class Rig:
         own = model.torque_at(motion.angle)
         return np.asarray(self.surroundings.torque(motion, model.dynamics.inertia, own=own, drive=drive))
 
-    def reaction(self, times: npt.ArrayLike, vibration: Response) -> FloatArray:
-        """Torque [N·m] that the reducer transmits at `times` [s]: of its stiffness and its damping."""
-        dynamics, omega = self.model.dynamics, self.model.dynamics.angular_frequency
-        stiffness = omega**2 * (1.0 + self.model.stiffness_fluctuation(self.angle(times)))
-        damping = 2.0 * dynamics.damping_ratio * omega
-        return dynamics.inertia * (stiffness * vibration.displacement + damping * vibration.velocity)
+    def coefficients(self, times: npt.ArrayLike) -> Coefficients:
+        """Coefficients of the equation of motion at `times` [s], any shape."""
+        counted = self.effects.growth.unit == "strokes"
+        strokes = np.asarray(self.programme.strokes(times) if counted else 0, dtype=np.float64)
+        return coefficients(self.model, self.effects, self.surroundings, self.motion(times), strokes)
+
+    def transmitted(self, times: npt.ArrayLike) -> FloatArray:
+        """Torque [N·m] that winds up the reducer at `times` [s] without vibration and ripple: friction is taken off."""
+        t = np.asarray(times, dtype=np.float64)
+        return self.torque(t, drive=False) - self.effects.friction_torque(t, self.speed(t))
+
+    def reaction(self, times: npt.ArrayLike, state: State) -> FloatArray:
+        """Torque [N·m] that the reducer transmits at `times` [s], given the vibration there: what J θ'' leaves of M."""
+        t = np.asarray(times, dtype=np.float64)
+        inertia = self.model.dynamics.inertia * self.surroundings.inertia_factor(self.motion(t))
+        acceleration = laws([(self.model, self.effects)]).acceleration(self.coefficients(t), *state)
+        friction = self.effects.friction_torque(t, self.speed(t) + state.velocity)
+        return np.asarray(self.torque(t) - friction - inertia * acceleration)
 
     def advance(self, count: int) -> RigChunk:
         """Simulate the next `count` samples.
@@ -115,54 +141,123 @@ class Rig:
         ParameterError
             If `count` is not positive.
         """
-        if count < 1:
-            raise ParameterError(f"count = {count} is not a number of samples; give at least 1")
-        model, inertia = self.model, self.model.dynamics.inertia
-        index = self._next + np.arange(count + 1)
-        substeps = self._substeps(index)
-        place = np.repeat(np.arange(count), substeps)
-        ends = np.cumsum(substeps)
-        within = np.arange(ends[-1]) - np.repeat(ends - substeps, substeps)
-        steps = 1.0 / (self.rate * substeps[place])
-        gauss = np.stack([(index[place] + (within + c) / substeps[place]) / self.rate for c in GAUSS_OFFSETS])
-        # Torque and stiffness at the Gauss points, then one scan over all steps.
-        oscillator = Oscillator(model.dynamics, model.stiffness_fluctuation(self.angle(gauss)), steps)
-        times = index[:-1] / self.rate
-        angle, torque = self.angle(times), self.torque(times)
+        return advance_together([self], count)[0]
+
+    def _begin(self) -> State:
+        """State at the next sample; at first that of rest under the torque there."""
         if self._state is None:
-            self._state = (float(torque[0] / model.stiffness(angle[0])), 0.0)
-        fine = oscillator.respond(self.torque(gauss) / inertia, self._state)
-        at = ends - substeps
-        displacement, velocity = fine.displacement[at], fine.velocity[at]
-        self._state = (float(fine.displacement[-1]), float(fine.velocity[-1]))
-        first, self._next = self._next, self._next + count
-        # Eq. 3 at the sampling instants; the model knows its own torques, the surroundings' come on top.
-        extra = (torque - model.torque_at(angle)) / inertia
+            start = np.array([self._next / self.rate])
+            at, factor = self.coefficients(start), self.surroundings.inertia_factor(self.motion(start))
+            load = self.torque(start) - self.effects.friction_torque(start, self.speed(start))
+            stiffness = self.model.dynamics.stiffness
+            level = load / (self.model.dynamics.inertia * factor * at.stiffness)
+            self._state = State(self.effects.elasticity.twist(float(level[0]), stiffness) - float(at.error[0]), 0.0)
+        return self._state
+
+    def _end(self, steps: Steps, displacement: FloatArray, velocity: FloatArray, hysteresis: FloatArray) -> RigChunk:
+        """Keep the last state and describe the samples."""
+        self._state = State(float(displacement[-1]), float(velocity[-1]), float(hysteresis[-1]))
+        self._next += steps.substeps.size
+        times, sampled = steps.times, steps.sampled
+        state = State(displacement[sampled], velocity[sampled], hysteresis[sampled])
+        at = self.coefficients(times)
         return RigChunk(
-            first=first,
+            first=steps.first,
             times=times,
-            angle=angle,
+            angle=self.angle(times),
             speed=self.speed(times),
             rigid_acceleration=self.rigid_acceleration(times),
-            displacement=displacement,
-            velocity=velocity,
-            acceleration=model.acceleration(angle, displacement, velocity) + extra,
-            torque=torque,
-            _fine_times=np.append((index[place] + within / substeps[place]) / self.rate, index[-1] / self.rate),
-            _fine=fine,
+            transmission_error=at.error,
+            displacement=state.displacement,
+            velocity=state.velocity,
+            acceleration=np.asarray(laws([(self.model, self.effects)]).acceleration(at, *state)),
+            torque=self.torque(times),
+            _fine_times=steps.ends(),
+            _fine=State(displacement, velocity, hysteresis),
         )
 
-    def _substeps(self, index: IntArray) -> IntArray:
-        """Steps in each sampling interval: enough for the fastest thing that happens in it."""
-        model = self.model
-        orders = model.reducer.output_orders
+    def _scan(self, count: int) -> RigChunk:
+        """Integrate a linear drive: coefficients at the Gauss points, then one scan over all steps."""
+        dynamics, steps = self.model.dynamics, Steps(self._next, self.rate, self._substeps(count))
+        at = self.coefficients(steps.instants(*GAUSS_OFFSETS))
+        fluctuation = at.stiffness / dynamics.angular_frequency**2 - 1.0
+        oscillator = Oscillator(dynamics, fluctuation, steps.lengths, np.broadcast_to(at.damping, fluctuation.shape))
+        forcing = at.forcing - at.damping * at.error_rate - at.stiffness * at.error
+        begin = self._begin()
+        fine = oscillator.respond(forcing, (begin.displacement, begin.velocity))
+        return self._end(steps, *fine, np.zeros(fine.velocity.size))
+
+    def _substeps(self, count: int) -> IntArray:
+        """Steps in each of the next sampling intervals: enough for the fastest thing that happens in it."""
+        effects, dynamics, around = self.effects, self.model.dynamics, self.surroundings
+        model, reducer = grown(self.model, effects.growth), self.model.reducer
+        orders = reducer.output_orders
         top = max(
             len(model.circular_spline.beta) * orders.circular_spline,
             len(model.flexspline.beta) * orders.flexspline,
-            WAVE_GENERATOR_LOBES * model.reducer.reduction,
+            max(WAVE_GENERATOR_LOBES, around.ripple.highest_order) * reducer.reduction,
+            effects.errors.highest_order(reducer),
         )
-        speed = np.abs(self.speed(index / self.rate))
+        speed = np.abs(self.speed((self._next + np.arange(count + 1)) / self.rate))
+        forced = top * np.maximum(speed[1:], speed[:-1])
         fluctuation = sum(map(abs, model.circular_spline.beta)) + sum(map(abs, model.flexspline.beta))
-        natural = model.dynamics.angular_frequency * math.sqrt(1.0 + fluctuation)
-        fastest = np.maximum(natural, top * np.maximum(speed[1:], speed[:-1]))
-        return np.maximum(1, np.ceil(fastest / (self.rate * PHASE_STEP))).astype(np.int64)
+        lightest = 1.0 + around.inertia.lowest
+        natural = dynamics.angular_frequency * math.sqrt((1.0 + fluctuation) / lightest)
+        natural *= 1.0 + max(0.0, effects.drift.natural_frequency)
+        if effects.linear:
+            fastest = np.maximum(natural, forced) / PHASE_STEP
+        else:
+            inertia, loop = lightest * dynamics.inertia, effects.hysteresis
+            natural = math.sqrt(natural**2 * max(effects.elasticity.ratios) + 2.0 * loop.torque / loop.length / inertia)
+            rubbing = effects.friction.steepest * (1.0 + max(0.0, effects.drift.friction)) / inertia
+            slowest = max(natural / MARCH_NATURAL, rubbing / MARCH_FRICTION)
+            fastest = np.maximum(slowest, forced / MARCH_FORCED)
+        return np.maximum(1, np.ceil(fastest / self.rate)).astype(np.int64)
+
+
+def advance_together(rigs: Sequence[Rig], count: int) -> list[RigChunk]:
+    """Simulate the next `count` samples of several rigs of one rate at once.
+
+    Rigs that are not linear share their steps, those that the most demanding of them needs.
+
+    Raises
+    ------
+    ParameterError
+        If `count` is not positive, or the rigs differ in their rates or their next samples.
+    """
+    if count < 1:
+        raise ParameterError(f"count = {count} is not a number of samples; give at least 1")
+    if len({(rig.rate, rig._next) for rig in rigs}) > 1:
+        raise ParameterError(
+            "rigs that are simulated together need the same rate and the same number of samples so far"
+        )
+    marching = [rig for rig in rigs if not rig.effects.linear]
+    marched = iter(_march_together(marching, count) if marching else ())
+    return [rig._scan(count) if rig.effects.linear else next(marched) for rig in rigs]
+
+
+def _march_together(rigs: Sequence[Rig], count: int) -> list[RigChunk]:
+    steps = Steps(rigs[0]._next, rigs[0].rate, np.stack([rig._substeps(count) for rig in rigs]).max(axis=0))
+    law = laws([(rig.model, rig.effects) for rig in rigs])
+    begin = [rig._begin() for rig in rigs]
+    state = begin[0] if len(rigs) == 1 else State(*np.array(begin).T)
+    lengths, instants = steps.lengths.tolist(), steps.ends(2)
+    fine = [np.array(state)[None]]
+    block = max(1, _ROW_NUMBERS // (2 * len(rigs)))
+    for first in range(0, len(lengths), block):
+        part = lengths[first : first + block]
+        rows = _rows(rigs, instants[2 * first : 2 * (first + len(part)) + 1])
+        states = march(law, rows, part, state)
+        state = states[-1]
+        fine.append(np.array(states[1:]))
+    columns = np.concatenate(fine).reshape(len(lengths) + 1, 3, len(rigs))
+    return [rig._end(steps, *columns[:, :, number].T) for number, rig in enumerate(rigs)]
+
+
+def _rows(rigs: Sequence[Rig], times: FloatArray) -> Sequence[Sequence[Any]]:
+    """Return the :class:`Coefficients` as rows over `times` [s]: numbers of one rig, or columns of several."""
+    rows = np.empty((times.size, len(Coefficients._fields), len(rigs)))
+    for number, rig in enumerate(rigs):
+        for row, values in enumerate(rig.coefficients(times)):
+            rows[:, row, number] = values
+    return rows[:, :, 0].tolist() if len(rigs) == 1 else list(rows)

@@ -25,27 +25,37 @@ def forcing(t):
     return 40.0 * np.cos(7.0 * t) - 90.0 * t
 
 
-def integrate(steps: int, duration: float = 2.0):
+def steady_damping(t):
+    return 2 * DYNAMICS.damping_ratio * OMEGA + 0.0 * t
+
+
+def varying_damping(t):
+    return 2.0 + np.sin(9.0 * t)
+
+
+def integrate(steps: int, duration: float = 2.0, damping=steady_damping):
     times = np.linspace(0.0, duration, steps + 1)
     between = gauss_times(times)
-    return Oscillator(DYNAMICS, fluctuation(between), duration / steps).respond(forcing(between), START)
+    given = None if damping is steady_damping else damping(between)
+    return Oscillator(DYNAMICS, fluctuation(between), duration / steps, given).respond(forcing(between), START)
 
 
-def exact(times, k=fluctuation, u=forcing, start=START):
+def exact(times, k=fluctuation, u=forcing, start=START, damping=steady_damping):
     def slope(t, state):
         x, v = state
-        return v, u(t) - 2 * DYNAMICS.damping_ratio * OMEGA * v - OMEGA**2 * (1 + k(t)) * x
+        return v, u(t) - damping(t) * v - OMEGA**2 * (1 + k(t)) * x
 
     solution = solve_ivp(slope, (0.0, times[-1]), start, "DOP853", times, rtol=1e-12, atol=1e-14)
     return solution.y
 
 
-def test_order_of_convergence_is_four():
-    """Halving the step divides the error by 16, with stiffness and forcing both varying."""
-    reference = exact([2.0])[:, -1]
+@pytest.mark.parametrize("damping", [steady_damping, varying_damping])
+def test_order_of_convergence_is_four(damping):
+    """Halving the step divides the error by 16, with stiffness, forcing and damping varying."""
+    reference = exact([2.0], damping=damping)[:, -1]
     errors = []
     for steps in (100, 200, 400, 800):
-        response = integrate(steps)
+        response = integrate(steps, damping=damping)
         errors.append(
             math.hypot(response.displacement[-1] - reference[0], (response.velocity[-1] - reference[1]) / OMEGA)
         )
