@@ -74,7 +74,7 @@ class HdSimNode(ManagedNode):
         def check() -> None:
             settings = self._settings(parameters)
             if self._simulation is not None and settings != self._simulation.settings:
-                check_stability(settings.model, settings.programme, settings.general.unstable)
+                check_stability(settings.largest_model, settings.programme, settings.general.unstable)
 
         return answer(check)
 

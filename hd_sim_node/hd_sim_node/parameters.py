@@ -8,6 +8,9 @@ from hd_monitor.settings import PARAMETERS as MONITOR_PARAMETERS
 
 from .drive.catalogue import DRIVES, PAPER
 from .drive.defects import CUSTOM, DEFECTS
+from .drive.elasticity import Elasticity, Hysteresis
+from .drive.friction import Friction
+from .drive.slow_change import DefectGrowth, Drift
 from .drive.stability import POLICIES as UNSTABLE_POLICIES
 from .drive.surroundings import ChangingInertia, MotorRipple
 from .messages.transport import TransportSettings
@@ -30,6 +33,19 @@ def _beta(spline: str) -> tuple[Parameter, ...]:
         f"{spline}.",
         beta=number((0.0,), "", -1.0, 1.0, indexes),
         phase=number((0.0,), "rad", -1e3, 1e3, f"phases of the {name}'s βk; those left out are 0"),
+    )
+
+
+def _error(part: str, lines: str) -> tuple[Parameter, ...]:
+    name = part.replace("_", " ")
+    return table(
+        f"{part}.",
+        transmission_error=number(
+            (0.0,), "arcmin", 0.0, 1e3, f"transmission error of the {name}, peak to peak, of {lines} k = 1, 2, …"
+        ),
+        transmission_error_phase=number(
+            (0.0,), "rad", -1e3, 1e3, f"phases of the {name}'s transmission error; those left out are 0"
+        ),
     )
 
 
@@ -80,7 +96,15 @@ PARAMETERS = (
     *(p for p in MONITOR_PARAMETERS if p.name.startswith("reducer.") and p.name != "reducer.serial"),
     *(p for p in MONITOR_PARAMETERS if p.name.startswith("dynamics.") and p.name != "dynamics.refine"),
     *_beta("flexspline"),
+    *_error("flexspline", "its lines"),
     *_beta("circular_spline"),
+    *_error("circular_spline", "its lines"),
+    *_error("wave_generator", "the harmonics of its revolution"),
+    *parameters_of(Elasticity, "elasticity."),
+    *parameters_of(Hysteresis, "hysteresis."),
+    *parameters_of(Friction, "friction."),
+    *parameters_of(Drift, "drift."),
+    *parameters_of(DefectGrowth, "growth."),
     *table(
         "torque.",
         mean=number(10.0, "N·m", -1e6, 1e6, "mean torque on the output, M0"),
@@ -108,7 +132,8 @@ PARAMETERS = (
 
 
 CHANGEABLE = (
-    *("defect", "flexspline.", "circular_spline.", "dynamics.", "torque.", "inertia.", "rigid_body", "transport."),
+    *("defect", "flexspline.", "circular_spline.", "wave_generator.", "elasticity.", "hysteresis.", "friction."),
+    *("drift.", "growth.", "dynamics.", "torque.", "inertia.", "rigid_body", "transport."),
     *("sensor.gain", "sensor.noise", "sensor.offset", "sensor.spike", "sensor.full_scale", "sensor.resolution"),
     *("sensor.fault", "sensor.clock_offset", "sensor.jitter", "joint_states.effort", "joint_states.velocity"),
     *("joint_states.resolution", "joint_states.wrapped", "joint_states.jitter", "joint_states.delay"),

@@ -15,7 +15,12 @@ from hd_monitor.settings import PARAMETERS as MONITOR_PARAMETERS
 
 from .drive.catalogue import PAPER, preset
 from .drive.defects import CUSTOM, stiffness_of
+from .drive.effects import Effects, grown
+from .drive.elasticity import Elasticity, Hysteresis
+from .drive.friction import Friction
+from .drive.slow_change import DefectGrowth, Drift
 from .drive.surroundings import ChangingInertia, MotorRipple, Surroundings
+from .drive.transmission_error import ErrorSeries, TransmissionErrors
 from .messages.transport import TransportSettings
 from .motion.programme import Ripple, SpeedProgramme
 from .motion.programmes import build_programme
@@ -53,7 +58,12 @@ class RigSettings:
         """
         own = flatten(given or {})
         settings = cls(check_all(PARAMETERS, {**preset(own.get("drive")), **own}, owner="the rig"))
-        for part in ("model", "programme", "surroundings"):  # what fits together is seen here, not at the first sample
+        for part in (
+            "model",
+            "programme",
+            "surroundings",
+            "effects",
+        ):  # what fits together is seen here, not at the first sample
             getattr(settings, part)
         settings.clock.check(settings.sampling.rate)
         return settings
@@ -104,6 +114,11 @@ class RigSettings:
             torque=fill_group(self.values, "torque", Torque),
         )
 
+    @property
+    def largest_model(self) -> ParametricModel:
+        """The model with its defects as large as they grow."""
+        return grown(self.model, self.effects.growth)
+
     def _custom(self, spline: str) -> StiffnessSeries:
         beta, phase = self.values[f"{spline}.beta"], self.values[f"{spline}.phase"]
         return StiffnessSeries(beta, phase + (0.0,) * (len(beta) - len(phase)))
@@ -126,6 +141,24 @@ class RigSettings:
             rigid_body=self.general.rigid_body,
             ripple=fill_group(self.values, "torque", MotorRipple),
             inertia=fill_group(self.values, "inertia", ChangingInertia),
+        )
+
+    @property
+    def effects(self) -> Effects:
+        """What the drive does beyond the parametric model."""
+        errors = {
+            part: ErrorSeries(
+                self.values[f"{part}.transmission_error"], self.values[f"{part}.transmission_error_phase"]
+            )
+            for part in ("flexspline", "circular_spline", "wave_generator")
+        }
+        return Effects(
+            errors=TransmissionErrors(**errors),
+            elasticity=fill_group(self.values, "elasticity", Elasticity),
+            hysteresis=fill_group(self.values, "hysteresis", Hysteresis),
+            friction=fill_group(self.values, "friction", Friction),
+            drift=fill_group(self.values, "drift", Drift),
+            growth=fill_group(self.values, "growth", DefectGrowth),
         )
 
     @property

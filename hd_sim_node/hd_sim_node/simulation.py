@@ -85,7 +85,7 @@ class Simulation:
     """
 
     def __init__(self, settings: RigSettings) -> None:
-        self.warning = check_stability(settings.model, settings.programme, settings.general.unstable)
+        self.warning = check_stability(settings.largest_model, settings.programme, settings.general.unstable)
         self.settings = settings
         general, rate, seed = settings.general, settings.sampling.rate, settings.general.seed
         self._filter = AntiAliasing(settings.filter, rate=rate)
@@ -95,6 +95,7 @@ class Simulation:
             rate=rate * self._filter.oversampling,
             start_angle=settings.start_angle,
             surroundings=settings.surroundings,
+            effects=settings.effects,
         )
         self._accelerometer = Accelerometer(settings.sensor, settings.fault, rate=rate, seed=seed)
         self._imu = Imu(settings.imu, settings.fault, seed=seed) if general.publish_imu else None
@@ -137,10 +138,11 @@ class Simulation:
         ParameterError
             If vibration would grow without bound, as at the start; nothing is changed then.
         """
-        self.warning = check_stability(settings.model, settings.programme, settings.general.unstable)
+        self.warning = check_stability(settings.largest_model, settings.programme, settings.general.unstable)
         self.settings = settings
         self._rig.model = settings.model
         self._rig.surroundings = settings.surroundings
+        self._rig.effects = settings.effects
         self._accelerometer.settings = settings.sensor
         self._accelerometer.fault.settings = settings.fault
         if self._imu is not None:

@@ -68,7 +68,7 @@ class EffortGauge:
             case "reaction":
                 return self._rig.reaction(times, chunk.vibration_at(times))
             case _:
-                return self._rig.torque(times, drive=False)
+                return self._rig.transmitted(times)
 
 
 def instants_within(chunk: RigChunk, rig_rate: float, rate: float) -> FloatArray:

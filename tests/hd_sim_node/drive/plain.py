@@ -93,8 +93,6 @@ def solve(q, speed, times, **given):
         middle = 0.5 * (low + high)
         low, high = (middle, high) if elastic(middle) < level else (low, middle)
     start = (low - e, 0.0, 0.0)
-    found = solve_ivp(
-        slope, (0.0, times[-1]), start, "DOP853", times, rtol=1e-10, atol=1e-14, max_step=2e-4
-    ).y
+    found = solve_ivp(slope, (0.0, times[-1]), start, "DOP853", times, rtol=1e-10, atol=1e-14, max_step=2e-4).y
     acceleration = np.array([slope(t, state)[1] for t, state in zip(times, found.T, strict=True)])
     return found[0], found[1], acceleration

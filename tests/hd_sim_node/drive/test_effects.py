@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -42,7 +43,7 @@ WARM = Drift(natural_frequency=-0.1, damping_ratio=0.8, friction=-0.4, time=0.15
 GROWING = DefectGrowth(flexspline=2.0, circular_spline=0.5, start=0.0, length=0.5)
 SWINGING = Surroundings(inertia=ChangingInertia(lowest=-0.3, highest=0.5, period=0.8), gravity=8.0)
 
-CASES = {
+CASES: dict[str, tuple[Effects, dict[str, Any]]] = {
     "transmission error": (Effects(errors=ERRORS), E),
     "steps of stiffness": (Effects(elasticity=STEPS), {"ratios": STEPS.ratios, "corners": STEPS.torques}),
     "hysteresis": (Effects(hysteresis=LOOP), {"loop": (0.5, 1.0)}),
@@ -144,7 +145,7 @@ def test_the_characteristic_is_odd_rises_and_is_undone(k1, k3, first, ratio, loa
 
 def test_the_characteristic_has_the_slopes_stated_and_its_corners_at_the_torques_stated():
     stiffness = 3.5e4
-    law = characteristic(*STEPS.ratios, *STEPS.corners(stiffness))
+    law = characteristic(0.8, 1.0, 1.25, *STEPS.corners(stiffness))
     for torque, ratio in ((0.5, 0.8), (9.0, 1.0), (60.0, 1.25)):
         at, step = STEPS.twist(torque / stiffness, stiffness), 1e-7
         assert (law(at + step) - law(at - step)) / (2 * step) == pytest.approx(ratio, rel=0.02)
@@ -184,7 +185,7 @@ def test_a_drive_transmits_what_its_inertia_leaves_of_the_torque():
     chunk = rig.advance(300)
     state, at = chunk.vibration_at(chunk.times), rig.coefficients(chunk.times)
     inertia = 0.29 * rig.surroundings.inertia_factor(rig.motion(chunk.times))
-    law = characteristic(*STEPS.ratios, *STEPS.corners(MODEL.dynamics.stiffness))
+    law = characteristic(0.8, 1.0, 1.25, *STEPS.corners(MODEL.dynamics.stiffness))
     viscous = RUBBING.viscous * (1 - 0.4 * WARM.warmth(chunk.times)) / inertia
     damping = (at.damping - viscous) * (state.velocity + at.error_rate)
     elastic = at.stiffness * law(state.displacement + at.error)
