@@ -178,7 +178,7 @@ class Rig:
 
     def _scan(self, count: int) -> RigChunk:
         """Integrate a linear drive: coefficients at the Gauss points, then one scan over all steps."""
-        dynamics, steps = self.model.dynamics, Steps(self._next, self.rate, self._substeps(count))
+        dynamics, steps = self.model.dynamics, Steps(self._next, self.rate, self._substeps(count), self._corners(count))
         at = self.coefficients(steps.instants(*GAUSS_OFFSETS))
         fluctuation = at.stiffness / dynamics.angular_frequency**2 - 1.0
         oscillator = Oscillator(dynamics, fluctuation, steps.lengths, np.broadcast_to(at.damping, fluctuation.shape))
@@ -186,6 +186,12 @@ class Rig:
         begin = self._begin()
         fine = oscillator.respond(forcing, (begin.displacement, begin.velocity))
         return self._end(steps, *fine, np.zeros(fine.velocity.size))
+
+    def _corners(self, count: int) -> FloatArray:
+        """Times [s] within the next sampling intervals at which the torque jumps."""
+        if not self.surroundings.rigid_body:
+            return np.empty(0)
+        return self.programme.corners(self._next / self.rate, (self._next + count) / self.rate)
 
     def _substeps(self, count: int) -> IntArray:
         """Steps in each of the next sampling intervals: enough for the fastest thing that happens in it."""
@@ -237,7 +243,9 @@ def advance_together(rigs: Sequence[Rig], count: int) -> list[RigChunk]:
 
 
 def _march_together(rigs: Sequence[Rig], count: int) -> list[RigChunk]:
-    steps = Steps(rigs[0]._next, rigs[0].rate, np.stack([rig._substeps(count) for rig in rigs]).max(axis=0))
+    substeps = np.stack([rig._substeps(count) for rig in rigs]).max(axis=0)
+    corners = np.concatenate([rig._corners(count) for rig in rigs])
+    steps = Steps(rigs[0]._next, rigs[0].rate, substeps, corners)
     law = laws([(rig.model, rig.effects) for rig in rigs])
     begin = [rig._begin() for rig in rigs]
     state = begin[0] if len(rigs) == 1 else State(*np.array(begin).T)

@@ -1,10 +1,13 @@
 """The steps of an integration between sampling instants."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from hd_monitor.arrays import FloatArray, IntArray
+
+_JUMP = 1e-9
+"""Time [s] that a jump of the acceleration is given."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -19,11 +22,14 @@ class Steps:
         Sampling intervals per second [Hz].
     substeps : ndarray of int, shape (intervals,)
         Equal steps in each interval.
+    corners : ndarray, shape (corners,)
+        Times [s] at which the acceleration may jump: a step ends before each and the next begins at it.
     """
 
     first: int
     rate: float
     substeps: IntArray
+    corners: FloatArray = field(default_factory=lambda: np.empty(0))
 
     @property
     def times(self) -> FloatArray:
@@ -33,19 +39,32 @@ class Steps:
     @property
     def lengths(self) -> FloatArray:
         """Lengths of the steps [s], shape (steps,)."""
+        if self.corners.size:
+            return np.diff(self.ends())
         return np.repeat(1.0 / (self.rate * self.substeps), self.substeps)
 
     @property
     def sampled(self) -> IntArray:
         """Numbers of the steps that begin at a sampling instant, shape (intervals,)."""
+        if self.corners.size:
+            return np.searchsorted(self.ends(), self.times)
         return np.asarray(np.cumsum(self.substeps) - self.substeps)
 
     def instants(self, *offsets: float) -> FloatArray:
         """Times [s] at fractions `offsets` of every step, shape (offsets, steps)."""
         place = np.repeat(np.arange(self.substeps.size), self.substeps)
-        within = np.arange(place.size) - self.sampled[place]
-        fractions = (within + np.array(offsets)[:, None]) / self.substeps[place]
-        return np.asarray((self.first + place + fractions) / self.rate)
+        within = np.arange(place.size) - np.repeat(np.cumsum(self.substeps) - self.substeps, self.substeps)
+
+        def even(fractions: FloatArray | float) -> FloatArray:
+            return np.asarray((self.first + place + (within + fractions) / self.substeps[place]) / self.rate)
+
+        if not self.corners.size:
+            return even(np.array(offsets)[:, None])
+        cuts = np.concatenate([self.corners - _JUMP, self.corners])
+        begins = even(0.0)
+        begins = np.unique(np.append(begins, cuts[cuts > begins[0]]))
+        lengths = np.diff(np.append(begins, (self.first + self.substeps.size) / self.rate))
+        return np.asarray(begins + np.array(offsets)[:, None] * lengths)
 
     def ends(self, per_step: int = 1) -> FloatArray:
         """Times [s] of the steps' ends and of equal parts of them, with the first beginning: per_step * steps + 1."""

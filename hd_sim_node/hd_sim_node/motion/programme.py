@@ -168,6 +168,16 @@ class SpeedProgramme:
         """Wave-generator acceleration [rad/s²] at `times` [s], any shape; at a corner that of the next piece."""
         return self.course(times).acceleration
 
+    def corners(self, start: float, end: float) -> FloatArray:
+        """Times [s] of the corners from `start` to before `end` [s]; there the acceleration jumps."""
+        (first, last), _ = self._cycle(np.array([start, end]))
+        found = []
+        for cycle in range(int(first), int(last) + 1):
+            begin = cycle * self.cycle_duration
+            inside = slice(*np.searchsorted(self.times, [start - begin, end - begin]))
+            found.append(begin + self.times[inside])
+        return np.concatenate(found)
+
     def strokes(self, times: npt.ArrayLike) -> IntArray:
         """Strokes begun by `times` [s], any shape: moves out of a standstill or a reversal."""
         cycle, rest = self._cycle(np.asarray(times, dtype=np.float64))

@@ -140,34 +140,69 @@ def test_settings_reach_the_surroundings():
     )
 
 
-def plain_equation(t, state, programme):
-    """θ' and θ'' of a joint that picks and places, written out: mean, gravity, payload and ripple on eq. 3."""
-    turn = float(programme.angle(t))
-    angle = 0.2 + turn / 80.0
-    weight = 3.0 + 8.0 * float(programme.course(t).carried)
-    torque = 10.0 + weight * math.cos(angle - 0.5)
-    torque += sum(m * math.cos(n * (turn + 16.0) + p) for m, n, p in ((0.3, 2, 0.7), (0.2, 6, 0.0), (0.1, 12, 0.0)))
-    dynamics = MODEL.dynamics
+def plain_equation(t, state, around, programme, output_acceleration):
+    """θ' and θ'' of a joint that picks and places, written out."""
+    dynamics, inertia = MODEL.dynamics, around.inertia
     omega = math.tau * dynamics.natural_frequency
+    turn, carried = float(programme.angle(t)), float(programme.course(t).carried)
+    angle = 0.2 + turn / 80.0
+    torque = 10.0 + (3.0 + around.payload * carried) * math.cos(angle - 0.5)
+    for amplitude, order, phase in zip(around.ripple.ripple, (2, 6, 12), (0.7, 0.0, 0.0), strict=True):
+        torque += amplitude * math.cos(order * (turn + 16.0) + phase)
+    moment = dynamics.inertia
+    if inertia.highest:
+        wave = math.sin(math.tau * t / inertia.period + math.asin(-0.25))  # from -30 % to +50 %
+        moment *= 1.1 + 0.4 * wave + inertia.payload * carried
+    if around.rigid_body:
+        torque -= moment * output_acceleration
+    damping = 2.0 * dynamics.damping_ratio * omega * state[1]
     restoring = omega**2 * (1.0 + float(MODEL.stiffness_fluctuation(angle))) * state[0]
-    return state[1], torque / dynamics.inertia - 2.0 * dynamics.damping_ratio * omega * state[1] - restoring
+    return state[1], (torque - dynamics.inertia * (damping + restoring)) / moment
 
 
-def test_payload_and_ripple_agree_with_a_generic_solver():
+@pytest.mark.parametrize(
+    "given_values",
+    [
+        {"payload": 8.0},
+        {"ripple": MotorRipple(ripple=(0.3, 0.2, 0.1), ripple_phase=(0.7,))},
+        {"inertia": ChangingInertia(lowest=-0.3, highest=0.5, period=0.9, payload=0.2)},
+        {"rigid_body": True},
+        {
+            "payload": 8.0,
+            "ripple": MotorRipple(ripple=(0.3, 0.2, 0.1), ripple_phase=(0.7,)),
+            "inertia": ChangingInertia(lowest=-0.3, highest=0.5, period=0.9, payload=0.2),
+            "rigid_body": True,
+        },
+    ],
+    ids=["payload", "ripple", "inertia", "rigid body", "all"],
+)
+def test_agrees_with_a_generic_solver(given_values):
     """From corner to corner, so that the generic solver meets smooth functions only."""
     programme = build_programme(
-        "pick_and_place", {"pick_and_place.angle": 20.0, "pick_and_place.pick_pause": 0.213}, MODEL.reducer
+        "pick_and_place", {"pick_and_place.angle": 20.0, "pick_and_place.pick_pause": 0.2137}, MODEL.reducer
     )
-    ripple = MotorRipple(ripple=(0.3, 0.2, 0.1), ripple_phase=(0.7,))
-    around = Surroundings(gravity=3.0, gravity_angle=0.5, payload=8.0, ripple=ripple)
+    around = Surroundings(gravity=3.0, gravity_angle=0.5, **given_values)
     chunk = Rig(MODEL, programme, rate=1000.0, start_angle=0.2, surroundings=around).advance(1200)
     edges = np.append(programme.times[programme.times < chunk.times[-1]], chunk.times[-1])
     state = np.array([chunk.displacement[0], 0.0])
     expected: list[float] = []
     for start, end in pairwise(edges):
+        rest = (around, programme, float(programme.acceleration(0.5 * (start + end))) / 80.0)
         inside = chunk.times[(chunk.times >= start) & (chunk.times < end)]
         times = np.append(inside, end)
-        y = solve_ivp(plain_equation, (start, end), state, "DOP853", times, rtol=1e-11, atol=1e-16, args=(programme,)).y
-        expected += [plain_equation(t, x, programme)[1] for t, x in zip(inside, y[:, :-1].T, strict=True)]
+        y = solve_ivp(plain_equation, (start, end), state, "DOP853", times, rtol=1e-11, atol=1e-16, args=rest).y
+        expected += [plain_equation(t, x, *rest)[1] for t, x in zip(inside, y[:, :-1].T, strict=True)]
         state = y[:, -1]
     np.testing.assert_allclose(chunk.acceleration[:-1], expected, atol=1e-5 * np.abs(expected).max())
+
+
+def test_jumps_of_the_acceleration_do_not_depend_on_how_the_motion_is_cut():
+    """Corners lie at sampling instants, at the ends of stretches and anywhere between."""
+    programme = SpeedProgramme(times=[0.0, 0.1, 0.2005, 0.3001, 0.4], speeds=[0.0, 900.0, 900.0, 0.0, 0.0])
+
+    def rig():
+        return Rig(MODEL, programme, rate=1000.0, surroundings=Surroundings(rigid_body=True))
+
+    whole, streamed = rig().advance(1000), rig()
+    joined = np.concatenate([streamed.advance(count).acceleration for count in (100, 100, 1, 99, 1, 199, 500)])
+    np.testing.assert_allclose(joined, whole.acceleration, atol=1e-6 * np.abs(whole.acceleration).max())

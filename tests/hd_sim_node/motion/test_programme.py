@@ -110,6 +110,23 @@ def test_after_a_week_the_angle_is_still_exact():
     assert turned == pytest.approx(50 * math.tau, abs=1e-6)
 
 
+@given(programmes(), st.floats(0.0, 1.0), st.floats(0.0, 1.0))
+def test_corners_are_where_the_pieces_meet(programme, begin, length):
+    start, end = (part * programme.cycle_duration for part in (begin, begin + 2.0 * length))
+    last = programme.cycles or math.inf
+    expected = [
+        n * programme.cycle_duration + t
+        for n in range(4)
+        if n < last
+        for t in programme.times[0 if n == 0 else 1 :]
+        if start + 1e-9 < n * programme.cycle_duration + t < end - 1e-9
+    ]
+    corners = programme.corners(start, end)
+    inside = corners[(corners > start + 1e-9) & (corners < end - 1e-9)]
+    np.testing.assert_allclose(np.unique(inside.round(9)), np.unique(np.round(expected, 9)), atol=1e-8)
+    assert np.all((corners >= start) & (corners < end + 1e-9))
+
+
 @given(programmes())
 def test_within_a_stroke_the_sense_never_changes(programme):
     times = np.linspace(0.0, 2.0 * programme.cycle_duration, 1001)
