@@ -29,7 +29,10 @@ setup(
             "hd_sim_node = hd_sim_node.__main__:main",
             "hd-sim-bag = hd_sim_node.bag_command:main",
         ],
-        "hd_monitor.commands": ["demo = hd_sim_node.demo.command"],
+        "hd_monitor.commands": [
+            "demo = hd_sim_node.demo.command",
+            "gallery = hd_sim_node.gallery.command",
+        ],
         "hd_monitor.parameters": ["hd_sim_node = hd_sim_node.parameters:ALL_PARAMETERS"],
     },
 )

@@ -5,6 +5,7 @@ import pytest
 from tests.hd_sim_node.rig_process import MODULE, NODE, arguments, blocks_of
 from tests.managed import change_state, set_parameter, state
 
+from hd_sim_node.drive.catalogue import preset
 from hd_sim_node.parameters import CHANGEABLE, NODE_PARAMETERS, PARAMETERS
 
 pytestmark = pytest.mark.ros
@@ -107,3 +108,15 @@ def test_the_pace_may_change_while_it_runs(peer, start_module, messages):
     assert result.successful, result.reason
     # At the first pace these would take half a minute of half an hour.
     peer.until(lambda: len(blocks) > 500, "blocks at the new pace")
+
+
+def test_a_preset_shows_in_the_declared_values(peer, start_module):
+    from rcl_interfaces.srv import GetParameters
+
+    start_module(MODULE, *arguments(**ENDLESS, drive="catalogue", dynamics__inertia=1.5))
+    names = ["drive", "torque.mean", "torque.ripple", "dynamics.inertia"]
+    values = peer.call(GetParameters, "hd_sim_node/get_parameters", GetParameters.Request(names=names)).values
+    assert values[0].string_value == "catalogue"
+    assert values[1].double_value == preset("catalogue")["torque.mean"]
+    assert tuple(values[2].double_array_value) == preset("catalogue")["torque.ripple"]
+    assert values[3].double_value == 1.5

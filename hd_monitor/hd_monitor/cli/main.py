@@ -27,7 +27,10 @@ COMMANDS = {
 }
 """Help by subcommand. Its module, of the same name, is imported only to run it: none needs the extras of another."""
 
-SIMULATOR_COMMANDS = {"demo": "simulate a defective reducer and watch it over real DDS"}
+SIMULATOR_COMMANDS = {
+    "demo": "simulate a defective reducer and watch it over real DDS",
+    "gallery": "show what each effect of a real drive does to the zoom spectrum",
+}
 """Help by subcommand of the simulator's package, listed even where that is not installed."""
 
 

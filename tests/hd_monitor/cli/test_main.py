@@ -50,7 +50,7 @@ def test_what_is_missing_is_one_clear_line(package: str, words: tuple[str, ...],
     assert not done.stdout
 
 
-@pytest.mark.parametrize("words", [["demo"], ["demo", "--help"], ["parameters", "--node", "sim"]])
+@pytest.mark.parametrize("words", [["demo"], ["demo", "--help"], ["gallery"], ["parameters", "--node", "sim"]])
 def test_without_the_simulators_package_its_commands_say_what_to_install(
     words: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
