@@ -74,6 +74,9 @@ _CATALOGUE: dict[str, Sourced] = {
     "reducer.flexspline_teeth": Sourced(160, "ratio 80 with two lobes"),
     "reducer.circular_spline_teeth": Sourced(162, "ratio 80 with two lobes"),
     "dynamics.inertia": Sourced(_INERTIA, "assumed: an elbow that holds 4 kg at 0.35 m, and its link"),
+    "dynamics.damping_ratio": Sourced(
+        0.05, "typical of a joint with its links: twice the test rig's; no document found"
+    ),
     **_elasticity(_STIFFNESS, "16, 25, 29 kN·m/rad: CHA, table 50.3"),
     "elasticity.torques": Sourced((7.0, 25.0), "T1, T2: CHA, table 50.3; the same in CSF, tables 41 and 42"),
     **_loop(1.0, 2.0, _STIFFNESS[0], "CHA, table 50.1: below 1′"),

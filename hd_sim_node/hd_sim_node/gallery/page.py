@@ -28,8 +28,8 @@ neutral by default.
 
 ![Zoom spectra of a simulated drive with one effect each, the drive without it in grey behind]({PICTURE})
 
-The paper's drive with a bad flexspline at {SPEED:g} rpm, {LENGTH:g} s, Hann window, around the pair k = 1; grey without
-the effect, black with it, all on one logarithmic scale. The natural frequency is 55 Hz.
+The paper's drive (55 Hz) with a bad flexspline at {SPEED:g} rpm, {LENGTH:g} s, Hann window, around the pair k = 1; grey
+without the effect, black with it, all on one logarithmic scale. Drawn by `hd-monitor gallery --out msgs_doc`.
 
 | | effect | set | look for |
 |---|---|---|---|
@@ -43,7 +43,7 @@ the effect, black with it, all on one logarithmic scale. The natural frequency i
 `drive` fills in the parameters that you do not give; whatever you give wins, also a `defect`. (A file with every
 default, as `hd-monitor parameters --format yaml` prints it, gives all, so that `drive` changes nothing there.) `paper`
 is the default; `catalogue` is a new unit of size 20 and ratio 80; `worn` is the same at the end of its life. Give the
-monitor the drive's `dynamics.natural_frequency` and `dynamics.inertia`.
+monitor the drive's `dynamics.*`.
 
 How the catalogue's numbers become parameters:
 
