@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from numpy.polynomial.polynomial import polyval
 
 from hd_monitor.arrays import FloatArray
 from hd_monitor.model import ParametricModel, StiffnessSeries
@@ -11,7 +12,7 @@ from hd_monitor.model import ParametricModel, StiffnessSeries
 from .elasticity import Elasticity, Hysteresis, Scalar, characteristic
 from .equation import Coefficients, Laws
 from .friction import Friction, sliding
-from .slow_change import DefectGrowth, Drift
+from .slow_change import DefectGrowth, Drift, Growth
 from .surroundings import Motion, Surroundings
 from .transmission_error import TransmissionErrors
 
@@ -74,26 +75,29 @@ def coefficients(
     warmth: FloatArray | float = drift.warmth(motion.times) if drift.any else 0.0
     faster, rubbing = 1.0 + drift.natural_frequency * warmth, 1.0 + drift.friction * warmth
     growing = effects.growth.at(motion.times, strokes)
-    fluctuation: FloatArray = np.zeros(motion.angle.shape)
-    for series, order, growth in (
-        (model.flexspline, orders.flexspline, growing[0]),
-        (model.circular_spline, orders.circular_spline, growing[1]),
+    errors = effects.errors
+    fluctuation: FloatArray | float = 0.0
+    error: FloatArray | float = 0.0
+    error_rate: FloatArray | float = 0.0
+    for order, stiffness, transmission, growth in (
+        (orders.flexspline, model.flexspline, errors.flexspline, growing[0]),
+        (orders.circular_spline, model.circular_spline, errors.circular_spline, growing[1]),
+        (model.reducer.reduction, StiffnessSeries(), errors.wave_generator, Growth()),
     ):
-        fluctuation = fluctuation + growth.factor * series(order * motion.angle)
-    error: FloatArray = np.zeros(motion.angle.shape)
-    error_rate = error
-    *splines, wave_generator = effects.errors.parts(motion.angle, model.reducer)
-    for part, growth in zip(splines, growing, strict=True):
+        if not (any(stiffness.beta) or any(transmission.peak_to_peak)):
+            continue
+        unit = np.exp(1j * order * motion.angle)
+        part = transmission.at(unit, order)
+        fluctuation = fluctuation + growth.factor * polyval(unit, [0.0, *stiffness.phasors]).real
         error = error + growth.factor * part.error
         error_rate = error_rate + growth.factor * part.slope * motion.speed + growth.rate * part.error
-    error, error_rate = error + wave_generator.error, error_rate + wave_generator.slope * motion.speed
     # Mass-normalised: J0 carries stiffness and damping, J(t) is accelerated
     lighter = 1.0 / surroundings.inertia_factor(motion)
     per_inertia = lighter / dynamics.inertia
     viscous = friction.viscous * rubbing
     torque = surroundings.torque(motion, dynamics.inertia, own=model.torque_at(motion.angle))
     damping = 2.0 * dynamics.damping_ratio * omega * (1.0 + drift.damping_ratio * warmth) * faster * lighter
-    return Coefficients(
+    given = Coefficients(
         # Viscous friction acts on the output's speed q' + θ', and as part of c also on e'
         forcing=per_inertia * (torque - viscous * (motion.speed - error_rate)),
         damping=damping + viscous * per_inertia,
@@ -104,6 +108,7 @@ def coefficients(
         friction=rubbing * per_inertia,
         hysteresis=effects.hysteresis.torque * per_inertia,
     )
+    return Coefficients(*np.broadcast_arrays(*given))
 
 
 def laws(drives: Sequence[tuple[ParametricModel, Effects]]) -> Laws:

@@ -28,8 +28,8 @@ MARCH_NATURAL, MARCH_FORCED, MARCH_FRICTION = 0.08, 0.3, 0.2
 """Longest step where the drive is not linear, for errors of 1e-5 of θ'': in radians of natural vibration, in radians
 of the fastest excitation, and in time constants of friction at standstill."""
 
-_ROW_NUMBERS = 400_000
-"""Steps times drives whose coefficients are held at once: some 50 MB."""
+_TOGETHER = 1_000_000
+"""Steps times drives whose coefficients are held at once: some 250 MB."""
 
 
 @dataclass(eq=False)
@@ -251,7 +251,7 @@ def _march_together(rigs: Sequence[Rig], count: int) -> list[RigChunk]:
     state = begin[0] if len(rigs) == 1 else State(*np.array(begin).T)
     lengths, instants = steps.lengths.tolist(), steps.ends(2)
     fine = [np.array(state)[None]]
-    block = max(1, _ROW_NUMBERS // (2 * len(rigs)))
+    block = max(1, _TOGETHER // len(rigs))
     for first in range(0, len(lengths), block):
         part = lengths[first : first + block]
         rows = _rows(rigs, instants[2 * first : 2 * (first + len(part)) + 1])
@@ -264,8 +264,8 @@ def _march_together(rigs: Sequence[Rig], count: int) -> list[RigChunk]:
 
 def _rows(rigs: Sequence[Rig], times: FloatArray) -> Sequence[Sequence[Any]]:
     """Return the :class:`Coefficients` as rows over `times` [s]: numbers of one rig, or columns of several."""
-    rows = np.empty((times.size, len(Coefficients._fields), len(rigs)))
-    for number, rig in enumerate(rigs):
-        for row, values in enumerate(rig.coefficients(times)):
-            rows[:, row, number] = values
-    return rows[:, :, 0].tolist() if len(rigs) == 1 else list(rows)
+    values = np.empty((len(rigs), len(Coefficients._fields), times.size))
+    for own, rig in zip(values, rigs, strict=True):
+        for row, coefficient in zip(own, rig.coefficients(times), strict=True):
+            row[:] = coefficient
+    return values[0].T.tolist() if len(rigs) == 1 else list(np.ascontiguousarray(values.T))

@@ -63,11 +63,11 @@ class ErrorSeries:
         phase[: len(self.phase)] = self.phase[: size.size]
         return np.asarray(size * np.exp(1j * phase))
 
-    def at(self, angle: FloatArray, order: float) -> ErrorSignal:
-        """Error at output angles [rad], any shape, for a part whose phase angle is `order` times that."""
+    def at(self, unit: ComplexArray, order: float) -> ErrorSignal:
+        """Error where the part's phasor is `unit`, which turns `order` times in an output revolution."""
         if not any(self.peak_to_peak):
             return NO_ERROR
-        unit, phasors = np.exp(1j * order * angle), self.phasors
+        phasors = self.phasors
         derivative = 1j * order * np.arange(1, phasors.size + 1) * phasors
         return ErrorSignal(*(np.asarray(polyval(unit, [0.0, *series]).real) for series in (phasors, derivative)))
 
@@ -88,15 +88,6 @@ class TransmissionErrors:
     flexspline: ErrorSeries = field(default_factory=ErrorSeries)
     circular_spline: ErrorSeries = field(default_factory=ErrorSeries)
     wave_generator: ErrorSeries = field(default_factory=ErrorSeries)
-
-    def parts(self, angle: FloatArray, reducer: Reducer) -> tuple[ErrorSignal, ErrorSignal, ErrorSignal]:
-        """Errors of flexspline, circular spline and wave generator at output angles [rad], any shape."""
-        orders = reducer.output_orders
-        return (
-            self.flexspline.at(angle, orders.flexspline),
-            self.circular_spline.at(angle, orders.circular_spline),
-            self.wave_generator.at(angle, reducer.reduction),
-        )
 
     def highest_order(self, reducer: Reducer) -> float:
         """Highest order per output revolution at which there is an error; 0 without."""
