@@ -154,13 +154,11 @@ class Rig:
             self._state = State(self.effects.elasticity.twist(float(level[0]), stiffness) - float(at.error[0]), 0.0)
         return self._state
 
-    def _end(self, steps: Steps, displacement: FloatArray, velocity: FloatArray, hysteresis: FloatArray) -> RigChunk:
-        """Keep the last state and describe the samples."""
-        self._state = State(float(displacement[-1]), float(velocity[-1]), float(hysteresis[-1]))
+    def _end(self, steps: Steps, at: Coefficients, fine: State) -> RigChunk:
+        """Keep the last state and describe the samples, given the coefficients there and the states at all steps."""
+        self._state = State(*(float(values[-1]) for values in fine))
         self._next += steps.substeps.size
-        times, sampled = steps.times, steps.sampled
-        state = State(displacement[sampled], velocity[sampled], hysteresis[sampled])
-        at = self.coefficients(times)
+        times, state = steps.times, State(*(values[steps.sampled] for values in fine))
         return RigChunk(
             first=steps.first,
             times=times,
@@ -172,8 +170,8 @@ class Rig:
             velocity=state.velocity,
             acceleration=np.asarray(laws([(self.model, self.effects)]).acceleration(at, *state)),
             torque=self.torque(times),
-            _fine_times=steps.ends(),
-            _fine=State(displacement, velocity, hysteresis),
+            _fine_times=steps.ends,
+            _fine=fine,
         )
 
     def _scan(self, count: int) -> RigChunk:
@@ -185,7 +183,7 @@ class Rig:
         forcing = at.forcing - at.damping * at.error_rate - at.stiffness * at.error
         begin = self._begin()
         fine = oscillator.respond(forcing, (begin.displacement, begin.velocity))
-        return self._end(steps, *fine, np.zeros(fine.velocity.size))
+        return self._end(steps, self.coefficients(steps.times), State(*fine, np.zeros(fine.velocity.size)))
 
     def _corners(self, count: int) -> FloatArray:
         """Times [s] within the next sampling intervals at which the torque jumps."""
@@ -249,8 +247,9 @@ def _march_together(rigs: Sequence[Rig], count: int) -> list[RigChunk]:
     law = laws([(rig.model, rig.effects) for rig in rigs])
     begin = [rig._begin() for rig in rigs]
     state = begin[0] if len(rigs) == 1 else State(*np.array(begin).T)
-    lengths, instants = steps.lengths.tolist(), steps.ends(2)
+    lengths, instants = steps.lengths.tolist(), steps.halves
     fine = [np.array(state)[None]]
+    sampled: list[Sequence[Any]] = []
     block = max(1, _TOGETHER // len(rigs))
     for first in range(0, len(lengths), block):
         part = lengths[first : first + block]
@@ -258,8 +257,11 @@ def _march_together(rigs: Sequence[Rig], count: int) -> list[RigChunk]:
         states = march(law, rows, part, state)
         state = states[-1]
         fine.append(np.array(states[1:]))
-    columns = np.concatenate(fine).reshape(len(lengths) + 1, 3, len(rigs))
-    return [rig._end(steps, *columns[:, :, number].T) for number, rig in enumerate(rigs)]
+        within = steps.sampled - first
+        sampled += [rows[2 * step] for step in within[(within >= 0) & (within < len(part))]]
+    columns = np.concatenate(fine).reshape(len(lengths) + 1, len(State._fields), len(rigs)).T.copy()
+    at = np.array(sampled).reshape(count, len(Coefficients._fields), len(rigs)).T.copy()
+    return [rig._end(steps, Coefficients(*own), State(*x)) for rig, own, x in zip(rigs, at, columns, strict=True)]
 
 
 def _rows(rigs: Sequence[Rig], times: FloatArray) -> Sequence[Sequence[Any]]:

@@ -1,6 +1,7 @@
 """The steps of an integration between sampling instants."""
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -10,7 +11,7 @@ _JUMP = 1e-9
 """Time [s] that a jump of the acceleration is given."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Steps:
     """Steps in a row of sampling intervals.
 
@@ -31,23 +32,23 @@ class Steps:
     substeps: IntArray
     corners: FloatArray = field(default_factory=lambda: np.empty(0))
 
-    @property
+    @cached_property
     def times(self) -> FloatArray:
         """Sampling instants [s]: the beginnings of the intervals, shape (intervals,)."""
         return (self.first + np.arange(self.substeps.size)) / self.rate
 
-    @property
+    @cached_property
     def lengths(self) -> FloatArray:
         """Lengths of the steps [s], shape (steps,)."""
         if self.corners.size:
-            return np.diff(self.ends())
+            return np.diff(self.ends)
         return np.repeat(1.0 / (self.rate * self.substeps), self.substeps)
 
-    @property
+    @cached_property
     def sampled(self) -> IntArray:
         """Numbers of the steps that begin at a sampling instant, shape (intervals,)."""
         if self.corners.size:
-            return np.searchsorted(self.ends(), self.times)
+            return np.searchsorted(self.ends, self.times)
         return np.asarray(np.cumsum(self.substeps) - self.substeps)
 
     def instants(self, *offsets: float) -> FloatArray:
@@ -66,7 +67,12 @@ class Steps:
         lengths = np.diff(np.append(begins, (self.first + self.substeps.size) / self.rate))
         return np.asarray(begins + np.array(offsets)[:, None] * lengths)
 
-    def ends(self, per_step: int = 1) -> FloatArray:
-        """Times [s] of the steps' ends and of equal parts of them, with the first beginning: per_step * steps + 1."""
-        inner = self.instants(*(part / per_step for part in range(per_step)))
-        return np.append(inner.T.ravel(), (self.first + self.substeps.size) / self.rate)
+    @cached_property
+    def ends(self) -> FloatArray:
+        """Times [s] of the first beginning and of the steps' ends, shape (steps + 1,)."""
+        return self.halves[::2]
+
+    @cached_property
+    def halves(self) -> FloatArray:
+        """Times [s] of all beginnings, middles and ends, shape (2 steps + 1,)."""
+        return np.append(self.instants(0.0, 0.5).T.ravel(), (self.first + self.substeps.size) / self.rate)

@@ -38,6 +38,11 @@ class ErrorSeries:
     phase : tuple of float
         Their phases [rad]; those left out are 0.
 
+    Attributes
+    ----------
+    phasors : ndarray, shape (harmonics,)
+        Complex amplitudes [rad].
+
     Raises
     ------
     ParameterError
@@ -46,30 +51,26 @@ class ErrorSeries:
 
     peak_to_peak: tuple[float, ...] = ()
     phase: tuple[float, ...] = ()
+    phasors: ComplexArray = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        """Check the lengths."""
+        """Check the lengths and form the phasors."""
         if len(self.phase) > max(1, len(self.peak_to_peak)):
             raise ParameterError(
                 f"{len(self.phase)} phases of a transmission error with {len(self.peak_to_peak)} harmonics; give at "
                 "most one phase a harmonic"
             )
-
-    @property
-    def phasors(self) -> ComplexArray:
-        """Complex amplitudes [rad], shape (harmonics,)."""
         size = 0.5 * ARCMIN * np.asarray(self.peak_to_peak, dtype=np.float64)
         phase = np.zeros(size.size)
         phase[: len(self.phase)] = self.phase[: size.size]
-        return np.asarray(size * np.exp(1j * phase))
+        object.__setattr__(self, "phasors", size * np.exp(1j * phase))
 
     def at(self, unit: ComplexArray, order: float) -> ErrorSignal:
         """Error where the part's phasor is `unit`, which turns `order` times in an output revolution."""
         if not any(self.peak_to_peak):
             return NO_ERROR
-        phasors = self.phasors
-        derivative = 1j * order * np.arange(1, phasors.size + 1) * phasors
-        return ErrorSignal(*(np.asarray(polyval(unit, [0.0, *series]).real) for series in (phasors, derivative)))
+        derivative = 1j * order * np.arange(1, self.phasors.size + 1) * self.phasors
+        return ErrorSignal(*(np.asarray(polyval(unit, [0.0, *series]).real) for series in (self.phasors, derivative)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -30,8 +30,8 @@ NOTHING = {
 }
 
 
-def solve(q, speed, times, **given):
-    """θ, θ' and θ'' of a 160/162 drive with a fixed circular spline along q(t), at `times`."""
+def equation(q, speed, **given):
+    """The right-hand side for (θ, θ', z) of a 160/162 drive with a fixed circular spline along q(t), and the start."""
     p = SimpleNamespace(**(NOTHING | given))
     j0, omega = p.inertia, 2 * math.pi * p.fn
     k0, (k1, k2, k3) = j0 * omega**2, p.ratios
@@ -92,7 +92,14 @@ def solve(q, speed, times, **given):
     for _ in range(100):  # bisection
         middle = 0.5 * (low + high)
         low, high = (middle, high) if elastic(middle) < level else (low, middle)
-    start = (low - e, 0.0, 0.0)
-    found = solve_ivp(slope, (0.0, times[-1]), start, "DOP853", times, rtol=1e-10, atol=1e-14, max_step=2e-4).y
+    return slope, (low - e, 0.0, 0.0)
+
+
+def solve(q, speed, times, *, method="DOP853", tolerance=1e-10, longest=2e-4, **given):
+    """θ, θ' and θ'' at `times` by one of scipy's solvers."""
+    slope, start = equation(q, speed, **given)
+    found = solve_ivp(
+        slope, (0.0, times[-1]), start, method, times, rtol=tolerance, atol=1e-4 * tolerance, max_step=longest
+    ).y
     acceleration = np.array([slope(t, state)[1] for t, state in zip(times, found.T, strict=True)])
     return found[0], found[1], acceleration
