@@ -186,7 +186,7 @@ class Rig:
         return self._end(steps, self.coefficients(steps.times), State(*fine, np.zeros(fine.velocity.size)))
 
     def _corners(self, count: int) -> FloatArray:
-        """Times [s] within the next sampling intervals at which the torque jumps."""
+        """Times [s] within the next sampling intervals and at their end at which the torque jumps."""
         if not self.surroundings.rigid_body:
             return np.empty(0)
         return self.programme.corners(self._next / self.rate, (self._next + count) / self.rate)

@@ -61,10 +61,10 @@ class Steps:
 
         if not self.corners.size:
             return even(np.array(offsets)[:, None])
-        cuts = np.concatenate([self.corners - _JUMP, self.corners])
+        cuts, end = np.concatenate([self.corners - _JUMP, self.corners]), (self.first + self.substeps.size) / self.rate
         begins = even(0.0)
-        begins = np.unique(np.append(begins, cuts[cuts > begins[0]]))
-        lengths = np.diff(np.append(begins, (self.first + self.substeps.size) / self.rate))
+        begins = np.unique(np.append(begins, cuts[(cuts > begins[0]) & (cuts < end)]))
+        lengths = np.diff(np.append(begins, end))
         return np.asarray(begins + np.array(offsets)[:, None] * lengths)
 
     @cached_property

@@ -169,12 +169,12 @@ class SpeedProgramme:
         return self.course(times).acceleration
 
     def corners(self, start: float, end: float) -> FloatArray:
-        """Times [s] of the corners from `start` to before `end` [s]; there the acceleration jumps."""
+        """Times [s] of the corners after `start` and up to `end` [s]; there the acceleration jumps."""
         (first, last), _ = self._cycle(np.array([start, end]))
         found = []
         for cycle in range(int(first), int(last) + 1):
             begin = cycle * self.cycle_duration
-            inside = slice(*np.searchsorted(self.times, [start - begin, end - begin]))
+            inside = slice(*np.searchsorted(self.times, [start - begin, end - begin], side="right"))
             found.append(begin + self.times[inside])
         return np.concatenate(found)
 
@@ -202,7 +202,7 @@ class SpeedProgramme:
         """Times [s] within a cycle at which a stroke begins."""
         before, after = self.speeds[:-1], self.speeds[1:]
         departs = (before == 0.0) & (after != 0.0)
-        reverses = before * after < 0.0
+        reverses = np.sign(before) * np.sign(after) < 0.0  # the product itself may underflow
         share = np.divide(before, before - after, out=np.zeros(before.size), where=reverses)
         starts: FloatArray = self.times[:-1] + share * self._lengths[:-1]
         return np.asarray(starts[departs | reverses])

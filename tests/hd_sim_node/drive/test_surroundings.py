@@ -12,6 +12,8 @@ from tests.oracle import MODEL
 
 from hd_monitor.errors import ParameterError
 from hd_monitor.model import ParametricModel, Torque
+from hd_sim_node.drive.effects import Effects
+from hd_sim_node.drive.elasticity import Hysteresis
 from hd_sim_node.drive.rig import Rig
 from hd_sim_node.drive.surroundings import ChangingInertia, Motion, MotorRipple, Surroundings
 from hd_sim_node.motion.programme import SpeedProgramme
@@ -196,12 +198,13 @@ def test_agrees_with_a_generic_solver(given_values):
     np.testing.assert_allclose(chunk.acceleration[:-1], expected, atol=1e-5 * np.abs(expected).max())
 
 
-def test_jumps_of_the_acceleration_do_not_depend_on_how_the_motion_is_cut():
+@pytest.mark.parametrize("effects", [Effects(), Effects(hysteresis=Hysteresis(torque=0.5))], ids=["scan", "march"])
+def test_jumps_of_the_acceleration_do_not_depend_on_how_the_motion_is_cut(effects):
     """Corners lie at sampling instants, at the ends of stretches and anywhere between."""
     programme = SpeedProgramme(times=[0.0, 0.1, 0.2005, 0.3001, 0.4], speeds=[0.0, 900.0, 900.0, 0.0, 0.0])
 
     def rig():
-        return Rig(MODEL, programme, rate=1000.0, surroundings=Surroundings(rigid_body=True))
+        return Rig(MODEL, programme, rate=1000.0, surroundings=Surroundings(rigid_body=True), effects=effects)
 
     whole, streamed = rig().advance(1000), rig()
     joined = np.concatenate([streamed.advance(count).acceleration for count in (100, 100, 1, 99, 1, 199, 500)])

@@ -124,13 +124,14 @@ def test_corners_are_where_the_pieces_meet(programme, begin, length):
     corners = programme.corners(start, end)
     inside = corners[(corners > start + 1e-9) & (corners < end - 1e-9)]
     np.testing.assert_allclose(np.unique(inside.round(9)), np.unique(np.round(expected, 9)), atol=1e-8)
-    assert np.all((corners >= start) & (corners < end + 1e-9))
+    assert np.all((corners > start - 1e-9) & (corners <= end))
 
 
 @given(programmes())
 def test_within_a_stroke_the_sense_never_changes(programme):
     times = np.linspace(0.0, 2.0 * programme.cycle_duration, 1001)
-    strokes, senses = programme.strokes(times), np.sign(programme.speed(times))
+    strokes = programme.strokes(times)
+    senses = np.sign(programme.speed(times).round(12))  # at a turn the speed is 0 but for rounding
     assert np.all(np.diff(strokes) >= 0)
     for stroke in np.unique(strokes):
         assert not {-1.0, 1.0} <= set(senses[strokes == stroke])
