@@ -9,6 +9,7 @@ import yaml
 
 from ..errors import ParameterError
 from ..parameter import flatten
+from .errors import one_line
 
 NODE = "hd_monitor_node"
 """Name of the monitor node, if nobody has renamed it."""
@@ -18,7 +19,7 @@ _WILD = {"**": r"(/[^/]+)*", "*": r"/[^/]+"}
 
 
 class _Loader(yaml.SafeLoader):
-    """YAML as ROS's parser understands it: 5e-2 is a number, with or without a point."""
+    """YAML as ROS's parser understands numbers: 5e-2 is one, with or without a point."""
 
 
 _Loader.add_implicit_resolver(
@@ -26,14 +27,22 @@ _Loader.add_implicit_resolver(
 )
 
 
-def read_yaml(path: Path) -> Any:
+class _PlainLoader(_Loader):
+    """YAML without aliases, which ROS's parser refuses too: a few lines of them hold themselves or a billion values."""
+
+    def compose_node(self, parent: yaml.Node | None, index: int) -> yaml.Node | None:
+        """Refuse an alias."""
+        if self.check_event(yaml.AliasEvent):
+            raise yaml.YAMLError("ROS reads no aliases (*name); write the values out")
+        return super().compose_node(parent, index)
+
+
+def read_yaml(path: Path, loader: type[_Loader] = _Loader) -> Any:
     """Read a YAML file; raise a `ParameterError` of one line if it cannot be read or is not YAML."""
     try:
-        return yaml.load(path.read_text(encoding="utf-8"), _Loader)
+        return _parsed(path.read_bytes(), str(path), loader)
     except OSError as error:
         raise ParameterError(f"{path} cannot be read: {error.strerror}; check the path") from None
-    except (yaml.YAMLError, UnicodeDecodeError) as error:
-        raise ParameterError(f"{path} is not valid YAML: {' '.join(str(error).split())}") from None
 
 
 def load_parameters(path: Path, node: str | None = None) -> dict[str, Any]:
@@ -57,7 +66,7 @@ def load_parameters(path: Path, node: str | None = None) -> dict[str, Any]:
     ParameterError
         If the file cannot be read, is not such YAML, or does not say whose parameters are meant.
     """
-    content = read_yaml(path)
+    content = read_yaml(path, _PlainLoader)
     if content is None:
         return {}
     if not isinstance(content, Mapping):
@@ -82,10 +91,17 @@ def parse_override(text: str) -> tuple[str, Any]:
     name, mark, value = text.partition(":=")
     if not mark or not name:
         raise ParameterError(f"{text!r} sets no parameter; write NAME:=VALUE, as in diagnosis.warn_index:=0.05")
+    return name, _parsed(value, f"the value in {text!r}", _PlainLoader)
+
+
+def _parsed(text: str | bytes, what: str, loader: type[_Loader]) -> Any:
+    """Return what YAML holds; bytes are UTF-8."""
     try:
-        return name, yaml.load(value, _Loader)
-    except yaml.YAMLError as error:
-        raise ParameterError(f"the value in {text!r} is not valid YAML: {' '.join(str(error).split())}") from None
+        return yaml.load(text if isinstance(text, str) else text.decode(), loader)
+    except RecursionError:
+        raise ParameterError(f"{what} is not valid YAML: it is nested too deeply; see config/ for examples") from None
+    except Exception as error:  # PyYAML's constructors raise anything: "!!int x", "2001-13-01", "!!timestamp"
+        raise ParameterError(f"{what} is not valid YAML: {one_line(error)}") from None
 
 
 def _sections(content: Mapping[Any, Any], above: str) -> Iterator[tuple[str, Mapping[str, Any]]]:
@@ -95,7 +111,10 @@ def _sections(content: Mapping[Any, Any], above: str) -> Iterator[tuple[str, Map
             continue
         name = re.sub("/+", "/", f"{above}/{key}")
         if _PARAMETERS in value:
-            yield name, value[_PARAMETERS] or {}
+            section = value[_PARAMETERS] or {}
+            if not isinstance(section, Mapping):
+                raise ParameterError(f"{_PARAMETERS} of {name} is {section!r}; give names with values below it")
+            yield name, section
         yield from _sections({k: v for k, v in value.items() if k != _PARAMETERS}, name)
 
 

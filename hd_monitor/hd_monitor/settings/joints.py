@@ -28,7 +28,8 @@ def set_aside_foreign(given: Mapping[str, Any]) -> tuple[dict[str, Any], list[st
     """
     flat = flatten(given)
     joints = flat.get("joints") or ["joint"]
-    own = tuple(f"{group}." for group in (*_OWN_GROUPS, *([joints] if isinstance(joints, str) else joints)))
+    # Whatever else stands there is refused by `split_joints`.
+    own = tuple(f"{group}." for group in (*_OWN_GROUPS, *(joints if isinstance(joints, (list, tuple)) else [joints])))
     known = {name for name in flat if name in {"joints", *_OF_JOINTS} or _is_of_the_node(name) or name.startswith(own)}
     strangers = sorted(flat.keys() - known)
     return {name: value for name, value in flat.items() if name not in strangers}, strangers

@@ -71,6 +71,22 @@ def test_anything_but_a_parameter_file_is_refused_in_one_line(tmp_path: Path, te
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.parametrize(
+    ("text", "cause"),
+    [
+        ("/**: {ros__parameters: hello}", "ros__parameters of /\\*\\* is 'hello'"),
+        ("/**: {ros__parameters: [1, 2]}", r"is \[1, 2\]"),
+        ("load: &a {torque: *a}", "no aliases"),
+        ("load: " + "[" * 5000, "nested too deeply"),
+        ("load: 2001-13-01", "not valid YAML: month must be in 1..12"),
+    ],
+)
+def test_what_no_node_could_read_is_refused_with_its_cause(tmp_path: Path, text: str, cause: str) -> None:
+    with pytest.raises(ParameterError, match=cause) as caught:
+        load(tmp_path, text)
+    assert "\n" not in str(caught.value)
+
+
 def test_an_empty_file_sets_nothing(tmp_path: Path) -> None:
     assert load(tmp_path, "# nothing\n") == {}
 

@@ -77,6 +77,12 @@ def test_what_a_shared_file_holds_for_others_is_set_aside() -> None:
     assert (settings.load.torque, settings.input.axis) == (3.0, "x")
 
 
+def test_a_shared_file_whose_joints_are_not_names_is_refused() -> None:
+    given, _ = set_aside_foreign({"joints": 5})
+    with pytest.raises(ParameterError, match="joints = 5 must be a list"):
+        split_joints(given)
+
+
 @pytest.mark.parametrize("name", ["reducer.flexspline_tooth", "diagnosis.warn_idnex", "elbow.sensor.radius"])
 def test_a_misspelt_name_is_not_foreign(name: str) -> None:
     mine, foreign = set_aside_foreign({"joints": ["elbow"], name: 1.0})
