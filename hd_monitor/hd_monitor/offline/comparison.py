@@ -16,6 +16,9 @@ SIGNIFICANT = 0.01
 SMALL = 0.002
 """Change of an index (fraction of the stiffness) that matters to nobody, however significant."""
 
+_TOO_LARGE = 1e100
+"""Numbers from here on, infinity and NaN are damage: their ratios and differences mean nothing."""
+
 SPLINES = ("circular_spline", "flexspline")
 
 _GEOMETRY = ("reducer.flexspline_teeth", "reducer.circular_spline_teeth", "reducer.mount")
@@ -69,10 +72,9 @@ def compare(before: Mapping[str, Any], after: Mapping[str, Any]) -> list[JointCh
     Raises
     ------
     BagError
-        If they have no joint in common, or are of different reducers.
+        If one of them is not such a result, they have no joint in common, or are of different reducers.
     """
-    old = {entry["joint"]: entry for entry in before["joints"] if entry["verdict"]}
-    new = {entry["joint"]: entry for entry in after["joints"] if entry["verdict"]}
+    old, new = _by_joint(before, "first"), _by_joint(after, "second")
     if len(old) == len(new) == 1:
         pairs = [(next(iter(old.values())), next(iter(new.values())))]
     else:
@@ -100,6 +102,36 @@ def as_dict(changes: Sequence[JointChange], before: str, after: str) -> dict[str
         for change in changes
     ]
     return dict(plain({"before": before, "after": after, "joints": joints}))
+
+
+def _by_joint(result: Mapping[str, Any], which: str) -> dict[str, Mapping[str, Any]]:
+    """Return the entries of the joints that have a verdict, by name; refuse those that cannot be compared."""
+    try:
+        entries = {entry["joint"]: entry for entry in result["joints"] if entry["verdict"]}
+        whole = all(map(_is_whole, entries.values()))
+    except (KeyError, TypeError):
+        whole = False
+    if not whole:
+        raise BagError(
+            f"the {which} result is not what hd-monitor replay --json writes: values are missing or of the wrong type; "
+            "replay the recording again"
+        )
+    return entries
+
+
+def _is_whole(entry: Mapping[str, Any]) -> bool:
+    """Whether what is read of an entry is of its type; what is missing raises a `KeyError`."""
+    verdict, curve = entry["verdict"], entry["rms_curve"]
+    indexes = [verdict[f"{spline}_index{suffix}"] for spline in SPLINES for suffix in ("", "_std")]
+    words = [entry["joint"], verdict["component"], verdict["level_name"]]
+    numbers = [verdict["level"], *(index for index in indexes if index is not None)]
+    numbers += [point[key] for point in curve for key in ("rpm", "rms")]
+    return (
+        isinstance(curve, list)
+        and isinstance(entry.get("parameters", {}), Mapping)
+        and all(isinstance(word, str) for word in words)
+        and all(isinstance(number, (int, float)) and abs(number) < _TOO_LARGE for number in numbers)
+    )
 
 
 def _joint_change(before: Mapping[str, Any], after: Mapping[str, Any]) -> JointChange:

@@ -71,3 +71,14 @@ def test_relative_indexes_are_not_compared_in_size() -> None:
     (change,) = compare(relative, result())
     assert change.indexes == ()
     assert any("relative" in sentence for sentence in change.sentences)
+
+
+@pytest.mark.parametrize("content", [{}, {"joints": 5}, {"joints": [{"joint": "a", "verdict": True, "rms_curve": []}]}])
+def test_what_is_no_result_is_refused(content: dict[str, object]) -> None:
+    with pytest.raises(BagError, match="the second result is not what hd-monitor replay --json writes"):
+        compare(result(), content)
+
+
+def test_a_result_with_a_missing_number_is_refused() -> None:
+    with pytest.raises(BagError, match="the first result"):
+        compare(result(curve=((500.0, None),)), result())
