@@ -36,7 +36,11 @@ class Elasticity:
         (1.0, 1.0, 1.0), "", 0.01, 100.0, "stiffness K1, K2, K3 over J (2π fn)², below T1, from T1 to T2 and above T2"
     )
     torques: tuple[float, ...] = number(
-        (5.0, 20.0), "N·m", 1e-6, 1e6, "torques T1, T2 between the steps of stiffness; the corners are rounded by 10 %"
+        (5.0, 20.0),
+        "N·m",
+        1e-6,
+        1e6,
+        "torques T1, T2 between the steps of stiffness; each corner is rounded over 10 % of its twist",
     )
 
     def __post_init__(self) -> None:
@@ -98,7 +102,9 @@ class Hysteresis:
     """
 
     torque: float = number(0.0, "N·m", 0.0, 1e6, "half the width of the hysteresis loop, T; 0: no hysteresis")
-    twist: float = number(1.0, "arcmin", 1e-3, 1e4, "twist x over which the loop closes by a factor e after a reversal")
+    twist: float = number(
+        1.0, "arcmin", 1e-3, 1e4, "twist x over which the loop closes by a factor e after a reversal (Dahl)"
+    )
 
     @property
     def length(self) -> float:

@@ -12,18 +12,20 @@ from .elasticity import Scalar
 class Friction:
     """Friction torque against the output's speed, in N·m and rad/s of the output: the parameters ``friction.*``."""
 
-    coulomb: float = number(0.0, "N·m", 0.0, 1e6, "sliding friction at the output")
+    coulomb: float = number(0.0, "N·m", 0.0, 1e6, "sliding friction at the output, against its speed with vibration")
     stribeck: float = number(
         0.0, "N·m", 0.0, 1e6, "by how much friction at the start of sliding exceeds the sliding one"
     )
-    stribeck_velocity: float = number(0.05, "rad/s", 1e-4, 1e3, "output speed at which half of that excess is gone")
+    stribeck_velocity: float = number(
+        0.05, "rad/s", 1e-4, 1e3, "output speed vs at which half of that excess is gone, as 1/(1 + (v/vs)²)"
+    )
     viscous: float = number(0.0, "N·m·s/rad", 0.0, 1e6, "friction that grows with the output's speed")
     creep_velocity: float = number(
         0.01,
         "rad/s",
         1e-4,
         10.0,
-        "output speed below which friction falls to 0: what stands creeps instead of sticking",
+        "output speed vc below which friction falls to 0, as v/√(v² + vc²): what stands creeps instead of sticking",
     )
 
     @property

@@ -19,7 +19,7 @@ class Drift:
     natural_frequency: float = number(0.0, "", -0.9, 9.0, "relative change of the natural frequency once warm")
     damping_ratio: float = number(0.0, "", -0.99, 99.0, "relative change of the damping ratio once warm")
     friction: float = number(0.0, "", -1.0, 99.0, "relative change of all friction once warm")
-    time: float = number(600.0, "s", 0.1, 1e7, "time constant of warming up")
+    time: float = number(600.0, "s", 0.1, 1e7, "time constant of warming up, 1 - exp(-t/time)")
 
     @property
     def any(self) -> bool:
@@ -47,7 +47,7 @@ class DefectGrowth:
 
     flexspline: float = number(1.0, "", 0.0, 1e3, "factor by which the flexspline's defect has grown in the end")
     circular_spline: float = number(1.0, "", 0.0, 1e3, "the same for the circular spline's")
-    start: float = number(0.0, "", 0.0, 1e7, "when the growth begins, in growth.unit")
+    start: float = number(0.0, "", 0.0, 1e7, "when the growth begins, in growth.unit; it is linear")
     length: float = number(60.0, "", 1e-3, 1e7, "how long it takes, in growth.unit")
     unit: str = choice(
         "seconds", GROWTH_UNITS, "of growth.start and growth.length; strokes: it grows from stroke to stroke"

@@ -83,7 +83,9 @@ class ChangingInertia:
 
     lowest: float = number(0.0, "", -0.9, 0.0, "smallest change of the inertia by the other joints, as a fraction")
     highest: float = number(0.0, "", 0.0, 10.0, "largest change of the inertia by the other joints, as a fraction")
-    period: float = number(4.0, "s", 0.05, 86_400.0, "time in which the other joints move there and back")
+    period: float = number(
+        4.0, "s", 0.05, 86_400.0, "time in which the other joints move there and back, as a sine wave"
+    )
     payload: float = number(0.0, "", 0.0, 10.0, "inertia of the payload while it is carried, as a fraction")
 
     def factor(self, times: FloatArray, carried: FloatArray | float) -> FloatArray | float:

@@ -2,37 +2,41 @@
 
 import argparse
 import sys
+from functools import cache
 from pathlib import Path
 
-from .effects import EFFECTS, zoom_of
-from .page import PICTURE, page
+from .effects import zoom_of
+from .page import PICTURES, page
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the command's arguments."""
     parser.description = (
-        "Simulates the paper's drive with each effect of a real drive alone and with all at once, and writes rig.md "
-        f"with {PICTURE}: what each does to the zoom spectrum, and where the numbers of the presets come from."
+        "Simulates the paper's drive with each effect of a real drive alone, with all at once and with each fault of "
+        f"the sensor, and writes rig.md with {' and '.join(PICTURES)}: what each does to the zoom spectrum, the "
+        "equation of motion, and where the numbers of the presets come from."
     )
     parser.add_argument("--out", required=True, type=Path, metavar="DIR", help="folder to write to")
-    parser.add_argument("--text-only", action="store_true", help="write the page but not the picture")
+    parser.add_argument("--text-only", action="store_true", help="write the page but not the pictures")
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Simulate and write."""
-    picture = arguments.out / PICTURE
     if not arguments.text_only:
         from hd_monitor.offline.plots.style import png
 
         from .picture import gallery_picture
 
-        grounds = {str(effect.ground): zoom_of(effect.ground) for effect in EFFECTS}
-        pairs = []
-        for effect in EFFECTS:
-            print(effect.name, file=sys.stderr, flush=True)
-            pairs.append((grounds[str(effect.ground)], zoom_of({**effect.ground, **effect.settings})))
-        picture.parent.mkdir(parents=True, exist_ok=True)
-        picture.write_bytes(png(gallery_picture([effect.name for effect in EFFECTS], pairs)))
+        zoom = cache(lambda settings: zoom_of(dict(settings)))  # the grounds are few
+        for place, effects in PICTURES.items():
+            pairs = []
+            for effect in effects:
+                print(effect.name, file=sys.stderr, flush=True)
+                both = {**effect.ground, **effect.settings}
+                pairs.append((zoom(tuple(effect.ground.items())), zoom(tuple(both.items()))))
+            picture = arguments.out / place
+            picture.parent.mkdir(parents=True, exist_ok=True)
+            picture.write_bytes(png(gallery_picture([effect.name for effect in effects], pairs)))
     arguments.out.mkdir(parents=True, exist_ok=True)
     (arguments.out / "rig.md").write_text(page(), encoding="utf-8")
     print(arguments.out / "rig.md")

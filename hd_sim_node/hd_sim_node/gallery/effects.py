@@ -24,7 +24,7 @@ window's side lobes."""
 BARE: Mapping[str, Any] = {
     "programme": "fixed",
     "fixed.speed": SPEED,
-    "duration": SETTLING + LENGTH,
+    "duration": SETTLING + LENGTH + 1.0,
 }
 """The paper's drive with its bad flexspline, turned at one speed under one torque."""
 
@@ -42,6 +42,8 @@ class Effect(NamedTuple):
     settings: Mapping[str, Any]
     look_for: str
     ground: Mapping[str, Any] = {}
+    shown: str = ""
+    """What the table says in place of the settings."""
 
 
 def of_catalogue(*prefixes: str) -> dict[str, Any]:
@@ -108,6 +110,7 @@ EFFECTS = (
         {**of_catalogue("drift."), "drift.time": 0.5},
         "As the grease thins, friction takes less torque and the lines rise again.",
         _FRICTION,
+        "`drift.*` of the catalogue, within seconds<br>both: the friction of row 9",
     ),
     Effect(
         "A defect that grows",
@@ -119,15 +122,21 @@ EFFECTS = (
         of_catalogue(*_ERRORS, "torque.ripple", "elasticity.", "hysteresis.", "friction.", "drift.") | SWINGING,
         "The sound circular spline's line is nearly as high as the bad flexspline's, among the side lines of the "
         "torque.",
+        shown="all effects in the table below, and `torque.gravity: 15`",
     ),
 )
 """In the order of the picture. The values are the catalogue's where it has any."""
 
 
 def zoom_of(settings: Mapping[str, Any]) -> ZoomSpectrum:
-    """Simulate :data:`BARE` with more settings and take the zoom spectrum of what the accelerometer puts out."""
+    """Simulate :data:`BARE` with more settings and take the zoom spectrum of what the sensor puts out.
+
+    With ``publish_imu`` that is the IMU's tangential acceleration over its radius, otherwise what the accelerometer
+    gives.
+    """
     rig = RigSettings.from_mapping({**BARE, **settings})
-    rate = rig.sampling.rate
-    samples = np.concatenate([stretch.samples for stretch in Simulation(rig)])
-    around = rig.reducer.line_frequencies(SPEED, 1)
-    return zoom_spectrum(samples[round(SETTLING * rate) :], 1.0 / rate, around=around, k=1, bins=_BINS)
+    rate, stretches = rig.sampling.rate, list(Simulation(rig))
+    samples = np.concatenate([s.samples if s.imu is None else s.imu.force[:, 1] / rig.imu.radius for s in stretches])
+    shown = samples[round(SETTLING * rate) :][: round(LENGTH * rate)]
+    around, period = rig.reducer.line_frequencies(SPEED, 1), stretches[0].blocks[0].period
+    return zoom_spectrum(shown, period, around=around, k=1, bins=_BINS)

@@ -1,15 +1,19 @@
 """The page ``msgs_doc/rig.md``: what each effect does, and the drives with the source of every number."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from hd_monitor.parameter import Value
 
 from ..drive.catalogue import DRIVES, SOURCES, Sourced
 from ..parameters import PARAMETERS
 from .effects import EFFECTS, LENGTH, SPEED, Effect
+from .equation import EQUATION
+from .sensors import SENSORS
 
-PICTURE = "images/rig.png"
-"""The picture beside the page."""
+PICTURES = {"images/rig.png": EFFECTS, "images/sensors.png": SENSORS}
+"""The pictures beside the page and what they show."""
+
+_DRIVE, _SENSOR = PICTURES
 
 
 def page() -> str:
@@ -21,19 +25,30 @@ def page() -> str:
 
 By default `hd_sim_node` and `hd-sim-bag` simulate the drive of Gu et al. (2021): a linear oscillator whose stiffness
 both splines make fluctuate. The parameters `*.transmission_error`, `elasticity.*`, `hysteresis.*`, `friction.*`,
-`torque.*`, `inertia.*`, `drift.*` and `growth.*` ([parameters](parameters.md)) add what a real drive does besides, each
-neutral by default.
+`torque.*`, `inertia.*`, `drift.*` and `growth.*` ([parameters](parameters.md)) add what a real drive does besides, and
+`sensor.*` and `joint_states.*` what is measured of it, each neutral by default.
 
+{EQUATION}
 ## What each effect does to the zoom spectrum
 
-![Zoom spectra of a simulated drive with one effect each, the drive without it in grey behind]({PICTURE})
+![Zoom spectra of a simulated drive with one effect each, the drive without it in grey behind]({_DRIVE})
 
 The paper's drive (55 Hz) with a bad flexspline at {SPEED:g} rpm, {LENGTH:g} s, Hann window, around the pair k = 1; grey
 without the effect, black with it, all on one logarithmic scale. Drawn by `hd-monitor gallery --out msgs_doc`.
 
 | | effect | set | look for |
 |---|---|---|---|
-{chr(10).join(_effect(number, effect) for number, effect in enumerate(EFFECTS, start=1))}
+{_rows_of(EFFECTS)}
+
+## What each fault of the sensor does to it
+
+![Zoom spectra of the same drive with one fault of the sensor each, the sound sensor in grey behind]({_SENSOR})
+
+The same drive, measured by parameters `sensor.*`.
+
+| | fault | set | look for |
+|---|---|---|---|
+{_rows_of(SENSORS)}
 
 ## Drives to choose by name
 
@@ -71,14 +86,14 @@ def _presets() -> Mapping[str, Mapping[str, Sourced]]:
     return {drive: entries for drive, entries in DRIVES.items() if entries}
 
 
+def _rows_of(effects: Sequence[Effect]) -> str:
+    return "\n".join(_effect(number, effect) for number, effect in enumerate(effects, start=1))
+
+
 def _effect(number: int, effect: Effect) -> str:
-    given = "<br>".join(f"`{name}: {_text(value)}`" for name, value in effect.settings.items())
-    if len(effect.settings) > 6:
-        given = "all effects in the table below, and `torque.gravity: 15`"
-    ground = "".join(f"<br>both: `{name}: {_text(value)}`" for name, value in effect.ground.items())
-    if len(effect.ground) > 1:
-        ground = "<br>both: the friction of row 9"
-    return f"| {number} | {effect.name} | {given}{ground} | {effect.look_for} |"
+    lines = [f"`{name}: {_text(value)}`" for name, value in effect.settings.items()]
+    lines += [f"both: `{name}: {_text(value)}`" for name, value in effect.ground.items()]
+    return f"| {number} | {effect.name} | {effect.shown or '<br>'.join(lines)} | {effect.look_for} |"
 
 
 def _rows(presets: Mapping[str, Mapping[str, Sourced]]) -> list[str]:
@@ -95,4 +110,4 @@ def _rows(presets: Mapping[str, Mapping[str, Sourced]]) -> list[str]:
 def _text(value: Value) -> str:
     if isinstance(value, tuple):
         return f"[{', '.join(f'{number:g}' for number in value)}]"
-    return f"{value:g}" if isinstance(value, float) else str(value)
+    return f"{value:g}" if isinstance(value, float) else str(value).lower() if isinstance(value, bool) else str(value)
