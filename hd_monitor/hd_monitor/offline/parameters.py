@@ -1,5 +1,6 @@
 """ROS parameter files and overrides, read as a node would read them, without ROS."""
 
+import itertools
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -15,11 +16,41 @@ NODE = "hd_monitor_node"
 """Name of the monitor node, if nobody has renamed it."""
 
 _PARAMETERS = "ros__parameters"
+_LARGEST, _DEEPEST, _MOST = 4_000_000, 50, 300_000
+"""Bytes, levels and values of the largest parameter file: a thousand joints with all their parameters have fewer."""
+
 _WILD = {"**": r"(/[^/]+)*", "*": r"/[^/]+"}
 
 
 class _Loader(yaml.SafeLoader):
-    """YAML as ROS's parser understands numbers: 5e-2 is one, with or without a point."""
+    """YAML as ROS's parser understands numbers: 5e-2 is one, with or without a point. Depth and size are bounded."""
+
+    _depth = 0
+
+    def compose_node(self, parent: yaml.Node | None, index: int) -> yaml.Node | None:
+        """Refuse to go too deep."""
+        self._depth += 1
+        if self._depth > _DEEPEST:
+            raise yaml.YAMLError(f"it is nested too deeply, in more than {_DEEPEST} levels; see config/ for examples")
+        node = super().compose_node(parent, index)
+        self._depth -= 1
+        return node
+
+    def get_single_data(self) -> Any:
+        """Return the only document, an alias counted as what it repeats: one that holds itself is too much."""
+        root = self.get_single_node()
+        inside: list[Any] = [root]
+        count = 0
+        while inside:
+            node = inside.pop()
+            count += 1
+            if count > _MOST:
+                raise yaml.YAMLError(f"an alias repeats itself, or there are more than {_MOST} values; write them out")
+            if isinstance(node, yaml.MappingNode):
+                inside += itertools.chain(*node.value)
+            elif isinstance(node, yaml.SequenceNode):
+                inside += node.value
+        return None if root is None else self.construct_document(root)
 
 
 _Loader.add_implicit_resolver(
@@ -40,9 +71,13 @@ class _PlainLoader(_Loader):
 def read_yaml(path: Path, loader: type[_Loader] = _Loader) -> Any:
     """Read a YAML file; raise a `ParameterError` of one line if it cannot be read or is not YAML."""
     try:
-        return _parsed(path.read_bytes(), str(path), loader)
+        with path.open("rb") as file:
+            content = file.read(_LARGEST + 1)
     except OSError as error:
         raise ParameterError(f"{path} cannot be read: {error.strerror}; check the path") from None
+    if len(content) > _LARGEST:
+        raise ParameterError(f"{path} is larger than {_LARGEST / 1e6:g} MB, which no parameter file is; check the path")
+    return _parsed(content, str(path), loader)
 
 
 def load_parameters(path: Path, node: str | None = None) -> dict[str, Any]:
@@ -70,7 +105,7 @@ def load_parameters(path: Path, node: str | None = None) -> dict[str, Any]:
     if content is None:
         return {}
     if not isinstance(content, Mapping):
-        raise ParameterError(f"{path} holds no parameters but a {type(content).__name__}; see config/ for examples")
+        raise ParameterError(f"{path} holds a {type(content).__name__} where parameters belong; see config/ for examples")
     sections = list(_sections(content, ""))
     if not sections:
         return flatten({str(name): value for name, value in content.items()})
@@ -98,8 +133,6 @@ def _parsed(text: str | bytes, what: str, loader: type[_Loader]) -> Any:
     """Return what YAML holds; bytes are UTF-8."""
     try:
         return yaml.load(text if isinstance(text, str) else text.decode(), loader)
-    except RecursionError:
-        raise ParameterError(f"{what} is not valid YAML: it is nested too deeply; see config/ for examples") from None
     except Exception as error:  # PyYAML's constructors raise anything: "!!int x", "2001-13-01", "!!timestamp"
         raise ParameterError(f"{what} is not valid YAML: {one_line(error)}") from None
 

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from hd_monitor.errors import ParameterError
-from hd_monitor.offline.parameters import load_parameters, parse_override
+from hd_monitor.offline.parameters import load_parameters, parse_override, read_yaml
 
 
 def load(tmp_path: Path, text: str, node: str | None = None) -> dict[str, Any]:
@@ -78,13 +78,29 @@ def test_anything_but_a_parameter_file_is_refused_in_one_line(tmp_path: Path, te
         ("/**: {ros__parameters: [1, 2]}", r"is \[1, 2\]"),
         ("load: &a {torque: *a}", "no aliases"),
         ("load: " + "[" * 5000, "nested too deeply"),
+        ("load: " + "{a: " * 5000, "nested too deeply"),
+        ("a: 1\n" * 1_000_000, "is larger than 4 MB"),
         ("load: 2001-13-01", "not valid YAML: month must be in 1..12"),
     ],
+    ids=lambda text: text[:30],
 )
 def test_what_no_node_could_read_is_refused_with_its_cause(tmp_path: Path, text: str, cause: str) -> None:
     with pytest.raises(ParameterError, match=cause) as caught:
         load(tmp_path, text)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("repeated", ["{x: *a%d, y: *a%d}", "[*a%d, *a%d]", "{<<: [*a%d, *a%d]}"])
+def test_aliases_that_grow_without_end_are_refused_where_aliases_are_read(tmp_path: Path, repeated: str) -> None:
+    file = tmp_path / "paper.yaml"
+    file.write_text("\n".join(["a0: &a0 {x: 1}"] + [f"a{n + 1}: &a{n + 1} {repeated % (n, n)}" for n in range(40)]))
+    with pytest.raises(ParameterError, match="an alias repeats itself"):
+        read_yaml(file)
+    file.write_text("a: &a\n  b: *a")
+    with pytest.raises(ParameterError, match="an alias repeats itself"):
+        read_yaml(file)
+    file.write_text("a: &a {b: 1}\nc: *a\nd: {<<: *a}")
+    assert read_yaml(file) == {"a": {"b": 1}, "c": {"b": 1}, "d": {"b": 1}}
 
 
 def test_an_empty_file_sets_nothing(tmp_path: Path) -> None:
