@@ -3,9 +3,20 @@
 UNUSABLE_INPUT = 2
 """Exit status for unusable input or parameters, or a package that is not installed."""
 
+FAILED = 3
+"""Exit status for output that cannot be written and for an error of our own."""
+
 
 class HdMonitorError(ValueError):
-    """Base of every error that hd_monitor raises on purpose."""
+    """Base of every error that hd_monitor raises on purpose.
+
+    Attributes
+    ----------
+    status : int
+        Exit status of a process that it ends.
+    """
+
+    status = UNUSABLE_INPUT
 
 
 class GeometryError(HdMonitorError):
@@ -18,3 +29,9 @@ class ParameterError(HdMonitorError):
 
 class LayoutError(HdMonitorError):
     """A message's arrays do not have the layout that the topic's contract requires."""
+
+
+class OutputError(HdMonitorError):
+    """A result cannot be written."""
+
+    status = FAILED

@@ -1,6 +1,28 @@
-"""How a process of ours treats its machine: both nodes and hd-monitor begin with this."""
+"""How a process of ours begins, treating its machine well, and ends, with an exit status and a line that says why."""
 
+import io
 import os
+import signal
+import sys
+import traceback
+from collections.abc import Callable
+from contextlib import suppress
+
+from .errors import FAILED, UNUSABLE_INPUT, HdMonitorError, OutputError
+
+READER_GONE = 128 + signal.SIGPIPE
+"""Exit status where the reader of the output has left, as a shell reports it of other commands."""
+
+INTERRUPTED = 128 + signal.SIGINT
+
+STATUSES = (
+    "exit status: 0 done; 1 done, and the answer is bad (--fail-on met, a claim failed, the demo's part not named); "
+    "2 unusable input, parameters or arguments, or a package is missing; 3 the output cannot be written, or an error "
+    "of our own; 130 interrupted; 141 the reader of the output has left"
+)
+
+_SYMBOLS = "ζ±²"  # in what the commands print
+_ROS = {"rclpy", "rcl_interfaces", "builtin_interfaces", "lifecycle_msgs", "std_srvs"}
 
 
 def set_up_process() -> None:
@@ -17,3 +39,86 @@ def set_up_process() -> None:
     """
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     bytes(8_000_000)  # freed at once, and never touched; the arrays of a stretch have up to a few million bytes
+
+
+def guard(name: str, work: Callable[[], int]) -> int:
+    """Do an executable's work and return its exit status; what goes wrong becomes one line that begins with `name`.
+
+    Only an error of our own has a traceback before that line.
+    """
+    try:
+        _check_streams()
+        try:
+            return work()
+        finally:
+            sys.stdout.flush()
+    except KeyboardInterrupt:
+        return INTERRUPTED
+    except BrokenPipeError:  # the reader has seen enough, as `| head` has
+        return READER_GONE
+    except ModuleNotFoundError as error:
+        return _end(f"{name}: {_missing(error)}", UNUSABLE_INPUT)
+    except HdMonitorError as error:
+        return _end(f"{name}: {error}", error.status)
+    except OSError as error:
+        place = error.filename or "standard output"
+        return _end(f"{name}: {place} cannot be written: {error.strerror or error}", FAILED)
+    except Exception as error:
+        with suppress(OSError):
+            traceback.print_exc()
+        what = " ".join(f"{type(error).__name__}: {error}".split())
+        return _end(f"{name}: internal error ({what}); please report it with the lines above", FAILED)
+    finally:
+        _silence_broken_streams()
+
+
+def _check_streams() -> None:
+    """Refuse to begin where the result could not be shown.
+
+    The next file to be opened would get the number of a closed stream, and what C libraries print would go there.
+    """
+    for stream, name in ((sys.stdout, "output"), (sys.stderr, "error")):
+        if stream is None:
+            raise OutputError(f"standard {name} is closed; redirect it, to /dev/null if nobody is to read it")
+    encoding = sys.stdout.encoding or "utf-8"
+    try:
+        _SYMBOLS.encode(encoding)
+    except UnicodeEncodeError:
+        raise OutputError(
+            f"standard output is encoded in {encoding}, which lacks {_SYMBOLS[0]!a}; set PYTHONIOENCODING=utf-8"
+        ) from None
+    if isinstance(sys.stdout, io.TextIOWrapper):  # file names need not be UTF-8; in JSON the escape is the right one
+        sys.stdout.reconfigure(errors="backslashreplace")
+
+
+def _end(line: str, status: int) -> int:
+    with suppress(OSError):
+        print(line, file=sys.stderr)  # on standard output, if standard error is closed
+    return status
+
+
+def _silence_broken_streams() -> None:
+    """Keep the interpreter, which flushes once more at exit, from complaining."""
+    for stream in (sys.stdout, sys.stderr):
+        if stream is None:
+            continue
+        try:
+            stream.flush()
+        except OSError:
+            with suppress(OSError):
+                os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+
+
+def _missing(error: ModuleNotFoundError) -> str:
+    """Say what is not installed and how to get it."""
+    name = (error.name or "").partition(".")[0]
+    if name == "hd_sim_node":
+        from .cli.extensions import SIMULATOR_MISSING
+
+        return SIMULATOR_MISSING
+    if name in _ROS or name.endswith("_msgs"):
+        return (
+            f"needs ROS 2 ({name} is missing): source your ROS installation, or run pip install '.[ros]' "
+            "in the checkout"
+        )
+    return f"needs the Python package {name!r}, which is not installed: run pip install '.[offline]' in the checkout"

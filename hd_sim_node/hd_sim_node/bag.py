@@ -2,6 +2,8 @@
 
 import heapq
 import math
+import shutil
+import sqlite3
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
@@ -13,7 +15,7 @@ from rosbags.typesys import Stores, get_typestore
 
 from hd_monitor import contract
 from hd_monitor.contract import NANOSECONDS
-from hd_monitor.errors import HdMonitorError
+from hd_monitor.errors import OutputError, ParameterError
 
 from .messages.encoding import MESSAGE_TYPES, encode
 from .settings import RigSettings
@@ -37,7 +39,7 @@ _QOS = Qos(
 )
 
 
-class BagError(HdMonitorError):
+class BagError(OutputError):
     """The bag cannot be written."""
 
 
@@ -88,14 +90,14 @@ def write_bag(
     Raises
     ------
     BagError
-        If the folder exists or cannot be written, or joints share a name.
+        If the folder exists or cannot be written; nothing is left of it where the disk was full.
     ParameterError
-        If a rig is unstable and ``unstable`` is ``refuse``.
+        If joints share a name, or a rig is unstable and ``unstable`` is ``refuse``.
     """
     rigs = [rigs] if isinstance(rigs, RigSettings) else list(rigs)
     names = [rig.joint.name for rig in rigs]
     if len(set(names)) != len(names):
-        raise BagError(f"joint_states.name is {' and '.join(names)}: several rigs need joints of different names")
+        raise ParameterError(f"joint_states.name is {' and '.join(names)}: several rigs need joints of different names")
     rigs = [
         rig
         if math.isfinite(rig.duration)
@@ -124,8 +126,11 @@ def write_bag(
                 counts[topic] += 1
                 if progress is not None and number % 5000 == 0:
                     progress(due / NANOSECONDS / end)
-    except (WriterError, OSError) as error:
+    except WriterError as error:
         raise BagError(f"{path} cannot be written: {error}") from error
+    except (OSError, sqlite3.Error) as error:
+        shutil.rmtree(path, ignore_errors=True)  # it was made here: the writer refuses what exists
+        raise BagError(f"{path} cannot be written: {getattr(error, 'strerror', None) or error}") from error
     return BagSummary(Path(path), end, counts)
 
 

@@ -8,8 +8,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from hd_monitor.cli.main import guard
 from hd_monitor.errors import ParameterError
+from hd_monitor.process import STATUSES, guard
 
 from .drive.catalogue import DRIVES
 from .drive.defects import CUSTOM, DEFECTS
@@ -24,7 +24,7 @@ def build_parser() -> argparse.ArgumentParser:
         prog="hd-sim-bag",
         description="Simulates a harmonic-drive rig and writes a rosbag2 bag with what hd_sim_node would publish, "
         "without ROS and far faster than real time.",
-        epilog="example: hd-sim-bag --defect flexspline --programme strokes --duration 120 --out strokes",
+        epilog="example: hd-sim-bag --defect flexspline --programme strokes --duration 120 --out strokes; " + STATUSES,
     )
     parser.add_argument("--out", required=True, type=Path, metavar="BAG", help="folder to write; must not exist")
     parser.add_argument(
@@ -57,9 +57,8 @@ def build_parser() -> argparse.ArgumentParser:
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run ``hd-sim-bag`` and return its exit status: 0 done, 2 refused."""
-    arguments = build_parser().parse_args(argv)
-    return guard("hd-sim-bag", lambda: _run(arguments))
+    """Run ``hd-sim-bag`` and return its exit status, one of `STATUSES`."""
+    return guard("hd-sim-bag", lambda: _run(build_parser().parse_args(argv)))
 
 
 def _run(arguments: argparse.Namespace) -> int:

@@ -33,7 +33,7 @@ import os, sys
 import {module} as executable
 assert "{VARIABLE}" not in os.environ, "importing a module must not change the environment"
 assert "numpy" not in sys.modules
-class Found(Exception): ...
+class Found(BaseException): ...
 class Watch:
     def find_spec(self, name, path=None, target=None):
         if name == "numpy":

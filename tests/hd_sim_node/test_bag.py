@@ -1,5 +1,7 @@
 """Bags written without ROS hold what the node would publish, message by message."""
 
+import resource
+import signal
 from typing import Any
 
 import numpy as np
@@ -16,6 +18,7 @@ pytest.importorskip("rosbags", reason="writing and reading bags needs the extra 
 from rosbags.highlevel import AnyReader
 from rosbags.typesys import Stores, get_typestore
 
+from hd_monitor.errors import ParameterError
 from hd_sim_node.bag import COMPRESSIONS, STORAGES, BagError, write_bag
 
 START = 1_700_000_000 * NANOSECONDS + 123
@@ -148,7 +151,7 @@ def test_several_rigs_share_joint_states(tmp_path):
 
 
 def test_rigs_of_the_same_joint_are_refused(tmp_path):
-    with pytest.raises(BagError, match="different names"):
+    with pytest.raises(ParameterError, match="different names"):
         write_bag([rig(), rig()], tmp_path / "bag")
 
 
@@ -169,6 +172,20 @@ def test_a_folder_that_cannot_be_made_is_an_error_with_a_reason(tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(BagError, match="cannot be written"):
         write_bag(rig(), tmp_path / "file" / "bag")
+
+
+@pytest.mark.parametrize("storage", STORAGES)
+def test_a_full_disk_is_an_error_and_leaves_no_half_bag(tmp_path, storage):
+    handler = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, before[1]))
+    try:
+        with pytest.raises(BagError, match="cannot be written"):
+            write_bag(rig(duration=60.0), tmp_path / "bag", storage=storage)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+        signal.signal(signal.SIGXFSZ, handler)
+    assert not (tmp_path / "bag").exists()
 
 
 def test_progress_is_reported(tmp_path):

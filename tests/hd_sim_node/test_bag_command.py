@@ -123,7 +123,7 @@ def test_refuses_with_one_line_and_status_2(tmp_path, monkeypatch, capsys, argum
 
 def test_an_existing_folder_is_refused(tmp_path, capsys):
     (tmp_path / "bag").mkdir()
-    assert main([*SHORT, "--out", str(tmp_path / "bag")]) == 2
+    assert main([*SHORT, "--out", str(tmp_path / "bag")]) == 3
     assert "exists already" in capsys.readouterr().err
 
 

@@ -10,7 +10,7 @@ from typing import Any
 from ..offline.comparison import as_dict, compare
 from ..offline.errors import BagError
 from ..offline.run import replay_bag
-from .replay import add_input_arguments, request_from, write_json
+from .replay import add_input_arguments, check_outputs, request_from, write_json
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -25,6 +25,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Compare the two; return the exit status."""
+    check_outputs(arguments)
     before, after = (_result(path, arguments) for path in (arguments.before, arguments.after))
     changes = compare(before, after)
     text = sys.stderr if arguments.json == "-" else sys.stdout

@@ -7,8 +7,9 @@ from pathlib import Path
 from ..offline.identify import identify
 from ..offline.identify_result import as_dict, parameter_file
 from ..offline.identify_table import table
+from ..offline.output import write_file
 from ..offline.parameters import parse_override
-from .replay import add_input_arguments, request_from, write_json, write_text
+from .replay import add_input_arguments, check_outputs, request_from, write_json
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -33,6 +34,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Identify the joints in the bags; return the exit status."""
+    check_outputs(arguments)
     notes: list[str] = []
 
     def note(sentence: str) -> None:
@@ -51,7 +53,7 @@ def run(arguments: argparse.Namespace) -> int:
         for reason in reasons:
             print(f"hd-monitor identify: not in {arguments.yaml}: {reason}", file=sys.stderr)
         if content:
-            write_text(arguments.yaml, content)
+            write_file(arguments.yaml, content)
             print(f"parameters: {arguments.yaml}", file=text)
         else:
             print(f"hd-monitor identify: {arguments.yaml} is not written: there is nothing to write", file=sys.stderr)

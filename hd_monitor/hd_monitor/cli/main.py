@@ -2,21 +2,14 @@
 
 import argparse
 import importlib
-import os
-import signal
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from importlib.metadata import EntryPoint
 from types import ModuleType
 
-from ..errors import UNUSABLE_INPUT, HdMonitorError
-from ..process import set_up_process
+from ..errors import HdMonitorError
+from ..process import STATUSES, guard, set_up_process
 from . import extensions
-
-READER_GONE = 128 + signal.SIGPIPE
-"""Exit status where the reader of the output has left, as a shell reports it of other commands."""
-
-_ROS = {"rclpy", "rcl_interfaces", "builtin_interfaces", "lifecycle_msgs", "std_srvs"}
 
 COMMANDS = {
     "replay": "put a recorded bag through the same core, with JSON and a report",
@@ -35,11 +28,13 @@ SIMULATOR_COMMANDS = {
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run ``hd-monitor`` and return its exit status: 0 done, 1 `--fail-on` met, 2 unusable input."""
+    """Run ``hd-monitor`` and return its exit status, one of `STATUSES`."""
     set_up_process()
     words = list(sys.argv[1:] if argv is None else argv)
     parser = argparse.ArgumentParser(
-        prog="hd-monitor", description="Watches harmonic-drive reducers and names the part that is going bad."
+        prog="hd-monitor",
+        description="Watches harmonic-drive reducers and names the part that is going bad.",
+        epilog=STATUSES,
     )
     subparsers = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
     added = extensions.declared(extensions.COMMANDS)
@@ -58,24 +53,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         status: int = arguments.run(arguments)
         return status
 
-    return guard(f"hd-monitor {chosen}", work)
-
-
-def guard(name: str, work: Callable[[], int]) -> int:
-    """Do a command's work; an error becomes one line that begins with `name`, and an exit status."""
-    try:
-        status = work()
-        sys.stdout.flush()
-        return status
-    except BrokenPipeError:  # the reader has seen enough, as `| head` has; nor may the flush at exit complain
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return READER_GONE
-    except (HdMonitorError, ModuleNotFoundError) as error:
-        reason = _missing(error) if isinstance(error, ModuleNotFoundError) else error
-        print(f"{name}: {reason}", file=sys.stderr)
-        return UNUSABLE_INPUT
-    except KeyboardInterrupt:
-        return 130
+    return guard(" ".join(filter(None, ("hd-monitor", chosen))), work)
 
 
 def _load(name: str, added: Mapping[str, EntryPoint]) -> ModuleType:
@@ -85,19 +63,6 @@ def _load(name: str, added: Mapping[str, EntryPoint]) -> ModuleType:
         raise HdMonitorError(extensions.SIMULATOR_MISSING)
     module: ModuleType = added[name].load()
     return module
-
-
-def _missing(error: ModuleNotFoundError) -> str:
-    """Say what is not installed and how to get it."""
-    name = (error.name or "").partition(".")[0]
-    if name == "hd_sim_node":
-        return extensions.SIMULATOR_MISSING
-    if name in _ROS or name.endswith("_msgs"):
-        return (
-            f"needs ROS 2 ({name} is missing): source your ROS installation, or run pip install '.[ros]' "
-            "in the checkout"
-        )
-    return f"needs the Python package {name!r}, which is not installed: run pip install '.[offline]' in the checkout"
 
 
 if __name__ == "__main__":

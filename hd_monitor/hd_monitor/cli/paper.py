@@ -9,6 +9,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from ..errors import HdMonitorError
+from ..offline.output import check_folder
 from ..paper.cases import has_cases, load_own_case, load_paper_cases
 from ..paper.exhibit import Outcome
 from ..paper.reproduction import EXHIBITS, OWN_EXHIBITS, compute
@@ -103,9 +104,4 @@ def _check_report(folder: Path) -> None:
         raise HdMonitorError(
             f"--report needs {' and '.join(missing)}; pip install '.[offline]' in the checkout, or leave it out"
         )
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise HdMonitorError(
-            f"--report {folder}: {error.strerror}; give a folder that can be made and written to"
-        ) from None
+    check_folder(folder)

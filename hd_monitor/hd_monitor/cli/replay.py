@@ -7,6 +7,7 @@ from pathlib import Path
 
 from ..diagnosis.verdict import Level
 from ..errors import ParameterError
+from ..offline.output import check_file, check_folder, write_file
 from ..offline.parameters import load_parameters, parse_override
 from ..offline.plan import Request
 from ..offline.run import replay_bag
@@ -65,6 +66,7 @@ def request_from(arguments: argparse.Namespace) -> Request:
 
 def run(arguments: argparse.Namespace) -> int:
     """Replay the bag; return the exit status."""
+    check_outputs(arguments)
     outcome = replay_bag(arguments.bag, request_from(arguments), for_report=bool(arguments.report))
     for note in outcome.notes:
         print(f"hd-monitor replay: {note}", file=sys.stderr)
@@ -82,24 +84,20 @@ def run(arguments: argparse.Namespace) -> int:
     return int(bool(arguments.fail_on) and worst >= _FAIL_ON[arguments.fail_on])
 
 
+def check_outputs(arguments: argparse.Namespace) -> None:
+    """Raise an `OutputError` before the work if a result cannot be written."""
+    given = vars(arguments)
+    for path in (given["json"], given.get("yaml")):
+        if path and path != "-":
+            check_file(Path(path))
+    if given.get("report"):
+        check_folder(given["report"])
+
+
 def write_json(content: object, target: str) -> None:
-    """Write JSON to a file, or to standard output if that is called ``-``; see :func:`write_text` for errors."""
+    """Write JSON to a file, or to standard output if that is called ``-``."""
     text = json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False)
     if target == "-":
         print(text)
     else:
-        write_text(Path(target), text + "\n")
-
-
-def write_text(path: Path, text: str) -> None:
-    """Write a text file.
-
-    Raises
-    ------
-    ParameterError
-        If the file cannot be written.
-    """
-    try:
-        path.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise ParameterError(f"{path} cannot be written: {error.strerror}; choose another file") from None
+        write_file(Path(target), text + "\n")

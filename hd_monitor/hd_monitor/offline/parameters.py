@@ -105,7 +105,7 @@ def load_parameters(path: Path, node: str | None = None) -> dict[str, Any]:
     if content is None:
         return {}
     if not isinstance(content, Mapping):
-        raise ParameterError(f"{path} holds a {type(content).__name__} where parameters belong; see config/ for examples")
+        raise ParameterError(f"{path} holds a {type(content).__name__} where parameters belong; see config/")
     sections = list(_sections(content, ""))
     if not sections:
         return flatten({str(name): value for name, value in content.items()})

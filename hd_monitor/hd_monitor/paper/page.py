@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from pathlib import Path
 
+from ..offline.output import write_folder
 from ..offline.report.page import PAGE, render
 from .drawing import png
 from .exhibit import Exhibit
@@ -14,11 +15,7 @@ def write_report(exhibits: Mapping[str, Exhibit], folder: Path, *, heading: str,
 
     `command` is the one that produced the exhibits.
     """
-    folder.mkdir(parents=True, exist_ok=True)
     pictures = {name: png(name, exhibit) for name, exhibit in exhibits.items() if exhibit.panels}
-    for name, data in pictures.items():
-        (folder / f"{name}.png").write_bytes(data)
-    path = folder / PAGE
     content = render(
         "paper/page.html.j2",
         heading=heading,
@@ -28,5 +25,5 @@ def write_report(exhibits: Mapping[str, Exhibit], folder: Path, *, heading: str,
         summary=summary(exhibits.values()),
         pictures=pictures,
     )
-    path.write_text(content, encoding="utf-8")
-    return path
+    write_folder(folder, {PAGE: content, **{f"{name}.png": data for name, data in pictures.items()}})
+    return folder / PAGE

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from contextlib import AbstractContextManager, suppress
 from typing import IO
 
-from hd_monitor.errors import HdMonitorError
+from hd_monitor.errors import FAILED, HdMonitorError
 
 PATIENCE = 5.0
 """Seconds that a process has to end after each request: as by Ctrl+C, then terminate, then kill."""
@@ -16,6 +16,8 @@ PATIENCE = 5.0
 
 class DemoError(HdMonitorError):
     """A process ended although it was still needed, or the monitor has stopped reporting."""
+
+    status = FAILED
 
 
 class Children(AbstractContextManager["Children"]):

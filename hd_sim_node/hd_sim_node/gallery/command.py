@@ -5,6 +5,8 @@ import sys
 from functools import cache
 from pathlib import Path
 
+from hd_monitor.offline.output import check_folder, write_folder
+
 from .effects import zoom_of
 from .page import PICTURES, page
 
@@ -22,6 +24,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Simulate and write."""
+    check_folder(arguments.out)
     if not arguments.text_only:
         from hd_monitor.offline.plots.style import png
 
@@ -35,9 +38,8 @@ def run(arguments: argparse.Namespace) -> int:
                 both = {**effect.ground, **effect.settings}
                 pairs.append((zoom(tuple(effect.ground.items())), zoom(tuple(both.items()))))
             picture = arguments.out / place
-            picture.parent.mkdir(parents=True, exist_ok=True)
-            picture.write_bytes(png(gallery_picture([effect.name for effect in effects], pairs)))
-    arguments.out.mkdir(parents=True, exist_ok=True)
-    (arguments.out / "rig.md").write_text(page(), encoding="utf-8")
+            drawn = png(gallery_picture([effect.name for effect in effects], pairs))
+            write_folder(picture.parent, {picture.name: drawn})
+    write_folder(arguments.out, {"rig.md": page()})
     print(arguments.out / "rig.md")
     return 0

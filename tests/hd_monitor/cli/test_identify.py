@@ -180,7 +180,6 @@ def test_json_to_standard_output_is_nothing_but_json(arm: Path, capsys: pytest.C
         (["{bag}", *ARM, "--remap", "joint_states:=/nowhere"], "no /nowhere (sensor_msgs/JointState) was recorded"),
         (["{bag}", *ARM, "--namespace", "/other"], "no /other/joint_states"),
         (["{bag}", *ARM, "--params", "{none}"], "cannot be read"),
-        (["{bag}", *ARM, "--json", "{none}/out.json"], "cannot be written"),
         (["{still}", *ARM], "nothing to identify"),
     ],
 )

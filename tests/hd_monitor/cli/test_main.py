@@ -96,11 +96,81 @@ def test_a_command_needs_no_other_commands_packages() -> None:
     assert done.returncode == 0, done.stderr
 
 
+def shell(redirection: str, *command: str) -> tuple[int, str]:
+    """Run one of the project's modules with redirections of a shell; return its status and what it says."""
+    line = f'exec "$0" -m "$@" {redirection}'
+    done = subprocess.run(
+        ["sh", "-c", line, sys.executable, *command], capture_output=True, text=True, timeout=60, check=False
+    )
+    return done.returncode, done.stdout + done.stderr
+
+
+EXECUTABLES = [
+    ("hd_monitor.cli.main", "parameters"),
+    ("hd_monitor.cli.main", "--help"),
+    ("hd_sim_node.bag_command", "--help"),
+]
+
+
+@pytest.mark.parametrize("command", EXECUTABLES)
+@pytest.mark.parametrize(
+    ("redirection", "words"),
+    [
+        (">/dev/full", "standard output cannot be written: No space left on device"),
+        (">&-", "standard output is closed; redirect it"),
+        ("2>&-", "standard error is closed; redirect it"),
+    ],
+)
+def test_output_that_cannot_be_written_is_one_line_and_status_3(
+    monkeypatch: pytest.MonkeyPatch, command: tuple[str, ...], redirection: str, words: str
+) -> None:
+    monkeypatch.delenv("PYTHONUNBUFFERED", raising=False)  # argparse swallows the error if it comes at once
+    status, said = shell(redirection, *command)
+    assert status == 3
+    assert words in said
+    assert said.count("\n") == 1, said
+
+
+@pytest.mark.parametrize("redirection", [">/dev/full 2>&1", ">&- 2>&-", "2>/dev/full >&-"])
+def test_where_nothing_can_be_said_the_status_is_still_3(redirection: str) -> None:
+    assert shell(redirection, "hd_monitor.cli.main", "parameters") == (3, "")
+
+
+@pytest.mark.parametrize("command", EXECUTABLES)
+def test_a_terminal_without_the_symbols_is_one_line_and_status_3(
+    monkeypatch: pytest.MonkeyPatch, command: tuple[str, ...]
+) -> None:
+    monkeypatch.setenv("PYTHONIOENCODING", "ascii")
+    status, said = shell("", *command)
+    assert status == 3
+    assert "standard output is encoded in ascii, which lacks '\\u03b6'; set PYTHONIOENCODING=utf-8" in said
+    assert said.count("\n") == 1, said
+
+
+@pytest.mark.parametrize("module", ["hd_monitor.ros", "hd_sim_node"])
+def test_the_nodes_refuse_a_closed_stream_alike(module: str) -> None:
+    status, said = shell(">&-", module)
+    assert status == 3
+    assert "standard output is closed" in said
+
+
+def test_an_error_of_our_own_ends_with_status_3(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("hd_monitor.cli.parameters.node_tables", lambda: {"key": 0}["no such key"])
+    assert main(["parameters"]) == 3
+    lines = capsys.readouterr().err.splitlines()
+    assert lines[0].startswith("Traceback")
+    assert lines[-1] == (
+        "hd-monitor parameters: internal error (KeyError: 'no such key'); please report it with the lines above"
+    )
+
+
 def test_a_reader_that_leaves_causes_no_traceback() -> None:
     reading, writing = os.pipe()
     os.close(reading)
-    done = subprocess.run(
-        [sys.executable, "-m", "hd_monitor.cli.main", "parameters"], stdout=writing, stderr=subprocess.PIPE, check=False
-    )
+    for output, error in ((writing, subprocess.PIPE), (writing, writing)):
+        command = [sys.executable, "-m", "hd_monitor.cli.main", "parameters"]
+        done = subprocess.run(command, stdout=output, stderr=error, timeout=60, check=False)
+        assert (done.returncode, done.stderr or b"") == (141, b"")
     os.close(writing)
-    assert (done.returncode, done.stderr) == (141, b"")

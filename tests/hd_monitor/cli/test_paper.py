@@ -81,7 +81,7 @@ def test_a_report_that_cannot_be_written_is_refused_before_the_work(capsys, tmp_
     pytest.importorskip("matplotlib")
     blocked = tmp_path / "file"
     blocked.write_text("")
-    assert main(["paper", "--report", str(blocked / "below")]) == 2
+    assert main(["paper", "--report", str(blocked / "below")]) == 3
     err = capsys.readouterr().err
-    assert "--report" in err
+    assert "below cannot be written: Not a directory" in err
     assert "[ 1/" not in err

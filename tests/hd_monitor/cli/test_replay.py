@@ -105,8 +105,6 @@ def test_fail_on_error_lets_a_warning_pass(recording: Path) -> None:
         (["{bag}", "--params", "{none}"], "cannot be read"),
         (["{bag}", "-p", "diagnosis.warn_indx:=1.0"], "diagnosis.warn_indx"),
         (["{bag}", "-p", "reducer.flexspline_teeth:=163"], "swapped"),
-        (["{bag}", "--json", "{none}/out.json"], "cannot be written"),
-        (["{bag}", "--report", "{text}/report"], "cannot be written"),
     ],
 )
 def test_unusable_input_is_reported_in_one_line_with_status_2(
@@ -120,6 +118,24 @@ def test_unusable_input_is_reported_in_one_line_with_status_2(
     assert len(lines) == 1
     assert lines[0].startswith("hd-monitor replay: ")
     assert words in lines[0]
+
+
+@pytest.mark.parametrize("command", ["replay", "identify"])
+@pytest.mark.parametrize(
+    "option", [["--json", "{none}/out.json"], ["--json", "{folder}"], ["--report", "{text}/report"]]
+)
+def test_an_output_that_cannot_be_written_is_one_line_and_status_3_before_the_work(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], command: str, option: list[str]
+) -> None:
+    if command == "identify" and option[0] == "--report":
+        option = ["--yaml", option[1]]
+    (tmp_path / "text").write_text("hello")
+    places = {"none": tmp_path / "none", "text": tmp_path / "text", "folder": tmp_path}
+    no_bag = str(tmp_path / "no bag")  # which would be reported, had the work begun
+    assert main([command, no_bag, *(word.format(**places) for word in option)]) == 3
+    (line,) = capsys.readouterr().err.splitlines()
+    assert re.match(f"hd-monitor {command}: .* cannot be written: ", line)
+    assert [file.name for file in tmp_path.iterdir()] == ["text"]
 
 
 def test_a_cut_off_recording_says_so_and_still_gives_a_verdict(

@@ -97,7 +97,7 @@ def test_a_node_that_dies_is_named(start_module: Start, which: int) -> None:
     wait_until(lambda: re.search(r"^ *\d+%", demo.output, re.MULTILINE) or not demo.running, "progress")
     nodes = children_of(demo)
     os.kill(nodes[which], signal.SIGKILL)
-    assert demo.wait() == 1
+    assert demo.wait() == 3
     assert f"hd-monitor demo: {('hd_sim_node', 'hd_monitor_node')[which]} ended with status -9" in demo.output
     assert not any(map(is_running, nodes))
 
@@ -105,7 +105,7 @@ def test_a_node_that_dies_is_named(start_module: Start, which: int) -> None:
 def test_a_node_that_refuses_to_start_is_quoted(start_module: Start) -> None:
     unstable = ("programme:=fixed", "fixed.speed:=3300.0", "dynamics.damping_ratio:=0.001")
     demo = start_module(COMMAND, "demo", *(word for parameter in unstable for word in ("--sim", parameter)))
-    assert demo.wait() == 1
+    assert demo.wait() == 3
     assert "hd_sim_node ended with status 2" in demo.output
     assert "parametrically unstable at 3300 rpm" in demo.output
 

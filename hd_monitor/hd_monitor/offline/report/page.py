@@ -8,7 +8,7 @@ from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from ...errors import ParameterError
+from ..output import write_folder
 from ..result import JointResult
 from .collector import Collector
 from .pictures import PICTURE_NAMES, pictures, unit_of
@@ -65,21 +65,18 @@ def write_page(
 
     Raises
     ------
-    ParameterError
-        If the folder cannot be written.
+    OutputError
+        If the folder cannot be written; an earlier report is still there.
     """
-    path = folder / PAGE
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        path.write_text(render(template, content=content, sections=sections), encoding="utf-8")
-        for section in sections:
-            prefix = re.sub(r"[^\w.-]+", "_", section["joint"]) + "_" if len(sections) > 1 else ""
-            for name in names:
-                picture = folder / f"{prefix}{name}.png"
-                if name in section["pictures"]:
-                    picture.write_bytes(section["pictures"][name])
-                else:
-                    picture.unlink(missing_ok=True)
-    except OSError as error:
-        raise ParameterError(f"{folder} cannot be written: {error.strerror}; choose another folder") from None
-    return path
+    files: dict[str, str | bytes] = {PAGE: render(template, content=content, sections=sections)}
+    stale = []
+    for section in sections:
+        prefix = re.sub(r"[^\w.-]+", "_", section["joint"]) + "_" if len(sections) > 1 else ""
+        for name in names:
+            picture = f"{prefix}{name}.png"
+            if name in section["pictures"]:
+                files[picture] = section["pictures"][name]
+            else:
+                stale.append(picture)
+    write_folder(folder, files, stale)
+    return folder / PAGE
