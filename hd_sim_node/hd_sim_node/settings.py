@@ -58,12 +58,7 @@ class RigSettings:
         """
         own = flatten(given or {})
         settings = cls(check_all(PARAMETERS, {**preset(own.get("drive")), **own}, owner="the rig"))
-        for part in (
-            "model",
-            "programme",
-            "surroundings",
-            "effects",
-        ):  # what fits together is seen here, not at the first sample
+        for part in ("model", "programme", "surroundings", "effects"):  # contradictions show here, not at a sample
             getattr(settings, part)
         settings.clock.check(settings.sampling.rate)
         return settings

@@ -12,24 +12,18 @@ PAPER = "paper"
 SOURCES = {
     "CSF": "Harmonic Drive LLC, catalogue *Cup Type Component Sets & Housed Units, CSF & CSG Series*",
     "CHA": "Harmonic Drive AG, *AC Servo Actuators CHA, Engineering Data*, 1018854 (12/2015), p. 50, size 20A, ratio "
-    "above "
-    "50",
+    "above 50",
     "TPI": "Schaeffler, catalogue TPI 275, series RT1-H-CS, size 20, ratio 100, at 20 °C and 2000 rpm; not itself, "
-    "but as "
-    "the open-source package harmonic-drive-twin tabulates it",
+    "but as the open-source package harmonic-drive-twin tabulates it",
     "CSD": "Harmonic Drive AG, *Component Sets CSD-2A, Engineering Data*, 1019659 (11/2014); its curves were not "
     "read off",
     "Shi": "Shi, Yin, Li, Tang, *Modeling and Parameter Identification of Friction Characteristics of Harmonic "
-    "Reducer*, "
-    "J. Northeastern Univ. (Nat. Sci.) 43 (2022) 89–97, doi 10.12068/j.issn.1005-3026.2022.01.013, on an "
-    "SHF-20-80-2UJ; "
-    "its abstract",
+    "Reducer*, J. Northeastern Univ. (Nat. Sci.) 43 (2022) 89–97, doi 10.12068/j.issn.1005-3026.2022.01.013, on an "
+    "SHF-20-80-2UJ; its abstract",
     "Yao": "Yao, Chen, Xing, on the main frequencies of the transmission error of harmonic gears (in Chinese), "
-    "Computer "
-    "Integrated Manufacturing Systems, August 2022; its abstract",
+    "Computer Integrated Manufacturing Systems, August 2022; its abstract",
     "Zhang": "Zhang, Zhang, Wang et al., *Accelerated Life Test and Performance Degradation Test of Harmonic Drive "
-    "with "
-    "Failure Analysis*, Machines 13 (2025) 918, doi 10.3390/machines13100918; its abstract and conclusions",
+    "with Failure Analysis*, Machines 13 (2025) 918, doi 10.3390/machines13100918; its abstract and conclusions",
 }
 """The documents by the short name that :attr:`Sourced.source` uses."""
 

@@ -23,8 +23,6 @@ class RigChunk:
         Sampling instants [s] since the start.
     angle, speed, rigid_acceleration : ndarray, shape (samples,)
         Output angle q [rad], its rate [rad/s], and what an accelerometer feels of the motion itself [rad/s²].
-    transmission_error : ndarray, shape (samples,)
-        e [rad].
     displacement, velocity, acceleration : ndarray, shape (samples,)
         Torsional vibration θ [rad], θ' [rad/s], θ'' [rad/s²].
     torque : ndarray, shape (samples,)
@@ -36,7 +34,6 @@ class RigChunk:
     angle: FloatArray
     speed: FloatArray
     rigid_acceleration: FloatArray
-    transmission_error: FloatArray
     displacement: FloatArray
     velocity: FloatArray
     acceleration: FloatArray

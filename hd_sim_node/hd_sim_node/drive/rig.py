@@ -103,10 +103,6 @@ class Rig:
             carried=course.carried,
         )
 
-    def rigid_acceleration(self, times: npt.ArrayLike) -> FloatArray:
-        """Acceleration [rad/s²] of the output along the programme at `times` [s]; 0 where it is left out."""
-        return self.motion(times).acceleration if self.surroundings.rigid_body else np.zeros(np.shape(times))
-
     def torque(self, times: npt.ArrayLike, *, drive: bool = True) -> FloatArray:
         """Torque M [N·m] that winds up the reducer at `times` [s], with or without the drive's own fluctuation."""
         motion = self.motion(times)
@@ -159,13 +155,13 @@ class Rig:
         self._state = State(*(float(values[-1]) for values in fine))
         self._next += steps.substeps.size
         times, state = steps.times, State(*(values[steps.sampled] for values in fine))
+        motion = self.motion(times)
         return RigChunk(
             first=steps.first,
             times=times,
-            angle=self.angle(times),
-            speed=self.speed(times),
-            rigid_acceleration=self.rigid_acceleration(times),
-            transmission_error=at.error,
+            angle=motion.angle,
+            speed=motion.speed,
+            rigid_acceleration=motion.acceleration if self.surroundings.rigid_body else np.zeros(times.size),
             displacement=state.displacement,
             velocity=state.velocity,
             acceleration=np.asarray(laws([(self.model, self.effects)]).acceleration(at, *state)),

@@ -50,7 +50,7 @@ class DefectGrowth:
     start: float = number(0.0, "", 0.0, 1e7, "when the growth begins, in growth.unit; it is linear")
     length: float = number(60.0, "", 1e-3, 1e7, "how long it takes, in growth.unit")
     unit: str = choice(
-        "seconds", GROWTH_UNITS, "of growth.start and growth.length; strokes: it grows from stroke to stroke"
+        "seconds", GROWTH_UNITS, "of growth.start and growth.length; strokes: it grows as each stroke begins"
     )
 
     @property
