@@ -3,11 +3,14 @@
 import math
 from typing import Any
 
+import numpy as np
 import pytest
+from tests.hd_sim_node.drive import plain
 
 from hd_monitor.errors import ParameterError
 from hd_sim_node.drive.catalogue import DRIVES, PAPER, SOURCES, preset
 from hd_sim_node.drive.defects import FAULTY, HEALTHY
+from hd_sim_node.drive.rig import Rig
 from hd_sim_node.drive.stability import unstable_speeds
 from hd_sim_node.motion.programmes import PROGRAMMES
 from hd_sim_node.parameters import PARAMETERS
@@ -115,3 +118,71 @@ def test_an_unknown_drive_is_refused():
 def test_the_monitor_must_be_told():
     (remark,) = RigSettings.from_mapping({"drive": "catalogue"}).remarks
     assert "31.21 Hz and an inertia of 0.65 kg·m²" in remark
+
+
+def test_the_catalogue_in_a_robots_joint_agrees_with_the_plain_equation():
+    """Everything at once: it picks and places under gravity, and turns back; cut where the acceleration jumps."""
+    settings = RigSettings.from_mapping(
+        {
+            "drive": "catalogue",
+            "programme": "pick_and_place",
+            "pick_and_place.angle": 4.0,
+            "pick_and_place.pick_pause": 0.12,
+            "pick_and_place.place_pause": 0.1,
+            "rigid_body": True,
+            "torque.gravity": 9.0,
+            "torque.payload": 6.0,
+            "inertia.lowest": -0.3,
+            "inertia.highest": 0.5,
+            "inertia.period": 0.9,
+            "inertia.payload": 0.15,
+        }
+    )
+    rig = Rig(
+        settings.model, settings.programme, rate=250.0, surroundings=settings.surroundings, effects=settings.effects
+    )
+    value, programme = settings.values, settings.programme
+
+    def carried(t):
+        return float(programme.course(t).carried)
+
+    def inertia(t):
+        return 1.1 + 0.4 * math.sin(math.tau * t / 0.9 + math.asin(-0.25)) + 0.15 * carried(t)
+
+    def load(t, q):
+        ripple = sum(m * math.cos(n * 80 * q) for m, n in zip(value["torque.ripple"], (2, 6, 12), strict=True))
+        weight = (9.0 + 6.0 * carried(t)) * math.cos(q)
+        return 17.0 + ripple + weight - 0.65 * inertia(t) * float(programme.acceleration(t)) / 80
+
+    def error(part):
+        sizes = value[f"{part}.transmission_error"]
+        return sizes, (*value[f"{part}.transmission_error_phase"], 0.0, 0.0)[: len(sizes)]
+
+    cuts = (30, 20, 95)  # the first after the pause, at 0.12 s
+    chunks = [rig.advance(count) for count in cuts]
+    expected = plain.solve(
+        lambda t: float(programme.angle(t)) / 80,
+        lambda t: float(programme.speed(t)) / 80,
+        np.arange(sum(cuts)) / 250.0,
+        longest=1e-3,
+        tolerance=1e-9,
+        beta1=(HEALTHY.beta, HEALTHY.phase),
+        beta2=(HEALTHY.beta, HEALTHY.phase),
+        e1=error("flexspline"),
+        e2=error("circular_spline"),
+        e0=error("wave_generator"),
+        ratios=value["elasticity.ratios"],
+        corners=value["elasticity.torques"],
+        loop=(value["hysteresis.torque"], value["hysteresis.twist"]),
+        coulomb=value["friction.coulomb"],
+        stribeck=(value["friction.stribeck"], value["friction.stribeck_velocity"]),
+        viscous=value["friction.viscous"],
+        drift=tuple(value[f"drift.{name}"] for name in ("natural_frequency", "damping_ratio", "friction", "time")),
+        fn=value["dynamics.natural_frequency"],
+        zeta=value["dynamics.damping_ratio"],
+        inertia=value["dynamics.inertia"],
+        load=load,
+        inertia_factor=inertia,
+    )[2]
+    found = np.concatenate([chunk.acceleration for chunk in chunks])
+    np.testing.assert_allclose(found, expected, atol=1e-5 * np.abs(expected).max())
