@@ -41,14 +41,26 @@ def set_up_process() -> None:
     bytes(8_000_000)  # freed at once, and never touched; the arrays of a stretch have up to a few million bytes
 
 
-def guard(name: str, work: Callable[[], int]) -> int:
+def guard(name: str, load: Callable[[], Callable[[], int]]) -> int:
     """Do an executable's work and return its exit status; what goes wrong becomes one line that begins with `name`.
 
     Only an error of our own has a traceback before that line.
+
+    Parameters
+    ----------
+    name : str
+    load : callable
+        Imports what is needed and returns the work, which returns the exit status. An interrupt ends the process at
+        once while it loads: there is nothing to undo, and libraries make other errors of an interrupted import.
     """
     try:
         _check_streams()
         try:
+            interrupt = signal.signal(signal.SIGINT, signal.SIG_DFL)
+            try:
+                work = load()
+            finally:
+                signal.signal(signal.SIGINT, interrupt)
             return work()
         finally:
             sys.stdout.flush()

@@ -5,21 +5,21 @@ import math
 import sys
 import time
 from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from hd_monitor.errors import ParameterError
-from hd_monitor.process import STATUSES, guard
-
-from .drive.catalogue import DRIVES
-from .drive.defects import CUSTOM, DEFECTS
-from .motion.programmes import PROGRAMMES
-from .parameters import NODE_PARAMETERS, PUBLISHED
-from .settings import RigSettings, pick
+from hd_monitor.process import STATUSES, guard, set_up_process
 
 
 def build_parser() -> argparse.ArgumentParser:
     """Build the command line."""
+    from .drive.catalogue import DRIVES
+    from .drive.defects import CUSTOM, DEFECTS
+    from .motion.programmes import PROGRAMMES
+    from .parameters import PUBLISHED
+
     parser = argparse.ArgumentParser(
         prog="hd-sim-bag",
         description="Simulates a harmonic-drive rig and writes a rosbag2 bag with what hd_sim_node would publish, "
@@ -58,13 +58,16 @@ def build_parser() -> argparse.ArgumentParser:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run ``hd-sim-bag`` and return its exit status, one of `STATUSES`."""
-    return guard("hd-sim-bag", lambda: _run(build_parser().parse_args(argv)))
+    set_up_process()
+    return guard("hd-sim-bag", lambda: partial(_run, build_parser().parse_args(argv)))
 
 
 def _run(arguments: argparse.Namespace) -> int:
     from hd_monitor.offline.parameters import load_parameters, parse_override
 
     from .bag import write_bag
+    from .parameters import NODE_PARAMETERS
+    from .settings import RigSettings, pick
 
     overrides = dict(parse_override(text) for text in arguments.set)
     shortcuts = ("drive", "defect", "programme", "publish", "duration", "seed")

@@ -2,10 +2,13 @@
 
 import os
 import platform
+import signal
 import subprocess
 import sys
 
 import pytest
+
+from hd_monitor.process import guard
 
 VARIABLE = "OPENBLAS_NUM_THREADS"
 
@@ -25,7 +28,9 @@ def test_one_thread_unless_the_environment_says_otherwise(environment: dict[str,
     assert output_of(script, **environment) == threads
 
 
-@pytest.mark.parametrize("module", ["hd_monitor.cli.main", "hd_monitor.ros.__main__", "hd_sim_node.__main__"])
+@pytest.mark.parametrize(
+    "module", ["hd_monitor.cli.main", "hd_monitor.ros.__main__", "hd_sim_node.__main__", "hd_sim_node.bag_command"]
+)
 def test_an_executable_says_so_before_numpy_comes(module: str) -> None:
     """Numpy reads the number at import: later is too late."""
     script = f"""
@@ -64,3 +69,36 @@ print(resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before)
 """
     pages_of_a_round = 8 * 40_000 * 8 // 4096
     assert int(output_of(script)) < pages_of_a_round
+
+
+INTERRUPTED_IMPORT = """
+import os, signal, time
+from hd_monitor.process import guard
+def load():
+    try:
+        os.kill(os.getpid(), signal.SIGINT)
+        time.sleep(10)
+    except BaseException:  # as libraries in C do
+        raise ImportError("initialization failed")
+guard("name", load)
+"""
+
+
+def test_an_interrupt_of_the_imports_ends_at_once_and_says_nothing() -> None:
+    done = subprocess.run([sys.executable, "-c", INTERRUPTED_IMPORT], capture_output=True, timeout=60, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (-signal.SIGINT, b"", b"")
+
+
+def test_an_interrupt_of_the_work_undoes_it_and_says_nothing(capsys: pytest.CaptureFixture[str]) -> None:
+    undone = []
+
+    def work() -> int:
+        try:
+            os.kill(os.getpid(), signal.SIGINT)
+            return 0
+        finally:
+            undone.append(True)
+
+    assert guard("name", lambda: work) == 130
+    assert undone == [True]
+    assert capsys.readouterr() == ("", "")

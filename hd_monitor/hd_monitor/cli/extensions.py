@@ -1,6 +1,9 @@
 """What other packages add to ``hd-monitor``, declared as entry points: commands, and the parameters of their nodes."""
 
-from importlib.metadata import EntryPoint, entry_points
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
 
 COMMANDS = "hd_monitor.commands"
 """Group of subcommands, by name: modules with ``configure(parser)`` and ``run(arguments)`` that returns the status."""
@@ -14,6 +17,8 @@ SIMULATOR_MISSING = (
 )
 
 
-def declared(group: str) -> dict[str, EntryPoint]:
+def declared(group: str) -> dict[str, "EntryPoint"]:
     """Find what the installed packages declare in a group, by name; nothing is imported."""
+    from importlib.metadata import entry_points  # takes as long as the rest of the command's start
+
     return {entry.name: entry for entry in entry_points(group=group)}

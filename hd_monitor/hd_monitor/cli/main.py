@@ -3,13 +3,17 @@
 import argparse
 import importlib
 import sys
-from collections.abc import Mapping, Sequence
-from importlib.metadata import EntryPoint
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from types import ModuleType
+from typing import TYPE_CHECKING
 
 from ..errors import HdMonitorError
 from ..process import STATUSES, guard, set_up_process
 from . import extensions
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
 
 COMMANDS = {
     "replay": "put a recorded bag through the same core, with JSON and a report",
@@ -31,6 +35,12 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Run ``hd-monitor`` and return its exit status, one of `STATUSES`."""
     set_up_process()
     words = list(sys.argv[1:] if argv is None else argv)
+    command = next((word for word in words if not word.startswith("-")), "")
+    return guard(f"hd-monitor {command}".rstrip(), lambda: _parsed(words))
+
+
+def _parsed(words: Sequence[str]) -> Callable[[], int]:
+    """Return the work that the command line asks for."""
     parser = argparse.ArgumentParser(
         prog="hd-monitor",
         description="Watches harmonic-drive reducers and names the part that is going bad.",
@@ -41,22 +51,17 @@ def main(argv: Sequence[str] | None = None) -> int:
     origins = {name: f"from the package {entry.module.partition('.')[0]}" for name, entry in added.items()}
     texts = {**origins, **SIMULATOR_COMMANDS, **COMMANDS}
     chosen = next((word for word in words if word in texts), None)
-
-    def work() -> int:
-        for name, text in texts.items():
-            subparser = subparsers.add_parser(name, help=text, description=text)
-            if name == chosen:
-                command = _load(name, added)
-                command.configure(subparser)
-                subparser.set_defaults(run=command.run)
-        arguments = parser.parse_args(words)
-        status: int = arguments.run(arguments)
-        return status
-
-    return guard(" ".join(filter(None, ("hd-monitor", chosen))), work)
+    for name, text in texts.items():
+        subparser = subparsers.add_parser(name, help=text, description=text)
+        if name == chosen:
+            command = _load(name, added)
+            command.configure(subparser)
+            subparser.set_defaults(run=command.run)
+    arguments = parser.parse_args(words)
+    return partial(arguments.run, arguments)
 
 
-def _load(name: str, added: Mapping[str, EntryPoint]) -> ModuleType:
+def _load(name: str, added: Mapping[str, "EntryPoint"]) -> ModuleType:
     if name in COMMANDS:
         return importlib.import_module(f"hd_monitor.cli.{name}")
     if name not in added:

@@ -1,6 +1,7 @@
 """The executable ``hd_monitor_node``."""
 
 import sys
+from collections.abc import Callable
 
 from ..process import guard, set_up_process
 
@@ -9,12 +10,12 @@ def main(args: list[str] | None = None) -> int:
     """Run the node; return its exit status."""
     set_up_process()
 
-    def work() -> int:
+    def load() -> Callable[[], int]:
         from .node import main as run  # imports numpy
 
-        return run(args)
+        return lambda: run(args)
 
-    return guard("hd_monitor_node", work)
+    return guard("hd_monitor_node", load)
 
 
 if __name__ == "__main__":
