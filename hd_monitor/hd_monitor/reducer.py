@@ -11,6 +11,9 @@ from .errors import GeometryError, ParameterError
 WAVE_GENERATOR_LOBES = 2
 """An elliptic wave generator meshes at two opposite places."""
 
+ARCMIN = math.pi / 10_800.0
+"""One minute of arc in radians: catalogues state transmission errors in it, peak to peak."""
+
 
 class Mount(StrEnum):
     """The spline that stands still."""

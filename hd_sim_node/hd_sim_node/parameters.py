@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from hd_monitor.parameter import Parameter, choice, number, parameters_of, plain, table
+from hd_monitor.reducer import Reducer
 from hd_monitor.settings import NODE_PARAMETERS as MONITOR_NODE_PARAMETERS
 from hd_monitor.settings import PARAMETERS as MONITOR_PARAMETERS
 
@@ -93,7 +94,7 @@ PARAMETERS = (
     ),
     *(parameter for kind in PROGRAMMES.values() for parameter in kind.parameters),
     # The reducer and its dynamics are the monitor's own parameters, so that one file serves both nodes.
-    *(p for p in MONITOR_PARAMETERS if p.name.startswith("reducer.") and p.name != "reducer.serial"),
+    *(p for p in MONITOR_PARAMETERS if p.name.removeprefix("reducer.") in Reducer.__dataclass_fields__),
     *(p for p in MONITOR_PARAMETERS if p.name.startswith("dynamics.") and p.name != "dynamics.refine"),
     *_beta("flexspline"),
     *_error("flexspline", "its lines"),

@@ -28,11 +28,10 @@ def test_every_key_of_a_status_is_documented_in_its_order() -> None:
     settings = JointSettings.from_mapping()
     status = status_of(Monitor(settings).silence(0), "joint")
     keys = [key for key, _ in status.values]
-    documented = documented_keys()
-    assert set(keys) == set(documented) - {"internal errors"}
-    assert [key for key in keys if "std" not in key] == [
-        key for key in documented if "std" not in key and key != "internal errors"
-    ]
+    # Left out of a status as long as there is nothing to say
+    documented = [key for key in documented_keys() if key != "internal errors" and "transmission error" not in key]
+    assert set(keys) == set(documented)
+    assert [key for key in keys if "std" not in key] == [key for key in documented if "std" not in key]
 
 
 @pytest.mark.parametrize("code", list(FaultCode))

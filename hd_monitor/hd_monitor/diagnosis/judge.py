@@ -7,8 +7,8 @@ from ..identification.result import Identification
 from ..reducer import Mount
 from ..settings import DiagnosisSettings, JointSettings
 from .limitations import describe_limitation
-from .probability import Probabilities, component_probabilities, name_component
-from .verdict import Component, Level, Verdict
+from .probability import Probabilities, component_probabilities, find_cause, name_component, severity
+from .verdict import Cause, Component, Level, Verdict
 from .wording import (
     describe_component,
     describe_doubtful_limit,
@@ -101,26 +101,28 @@ class Judge:
         held = self._shown.component if self._shown is not None else Component.UNDETERMINED
         alarmed = held not in (Component.NONE, Component.UNDETERMINED)
         limit = limits.warn_index * (1.0 - limits.hysteresis) if alarmed else limits.warn_index
-        component = name_component(evidence.index, limit, limits.both_ratio)
-        odds = component_probabilities(evidence, limit, limits.both_ratio)
+        component = name_component(severity(evidence, limits), limit, limits.both_ratio)
+        odds = component_probabilities(evidence, limits, limit)
+        error_std = evidence.transmission_error_std or (0.0, 0.0)
         sharp = max(evidence.index_std) < _SHARP * limits.warn_index
+        sharp = sharp and max(error_std) < _SHARP * limits.warn_transmission_error
         sound = component is Component.NONE
         if not sharp and (odds.none if sound else 1.0 - odds.none) < limits.confidence:
-            return self._undetermined(describe_doubtful_limit(evidence, limit))
+            return self._undetermined(describe_doubtful_limit(evidence, limits, limit))
         if sound:
-            return self._named(component, Level.OK, evidence)
+            return self._named(component, Level.OK, evidence, Cause.NONE)
         level = self._magnitude(evidence)
         if self._contradicted(component, odds):
             return self._undetermined(describe_doubtful_name(evidence, odds), level)
-        return self._named(component, level, evidence)
+        return self._named(component, level, evidence, find_cause(evidence, limits, limit))
 
     def _assess_relative(self, evidence: Identification) -> Verdict:
         """Without the torque only the ratio of the two indexes means something: no limit applies."""
         component = name_component(evidence.index, 0.0, self._limits.both_ratio)
-        odds = component_probabilities(evidence, 0.0, self._limits.both_ratio)
+        odds = component_probabilities(evidence, self._limits, 0.0)
         if self._contradicted(component, odds):
             return self._undetermined(describe_doubtful_name(evidence, odds))
-        return Verdict.naming(component, Level.OK, describe_relative(component, evidence))
+        return Verdict.naming(component, Level.OK, describe_relative(component, evidence), Cause.RELATIVE)
 
     def _contradicted(self, component: Component, odds: Probabilities) -> bool:
         """Whether a part that should not be named alone could be the one after all, beyond the required confidence."""
@@ -133,18 +135,22 @@ class Judge:
         return opposite > 1.0 - self._limits.confidence
 
     def _magnitude(self, evidence: Identification) -> Level:
-        """Level that the larger index calls for, whichever spline it belongs to."""
+        """Level that the worst reading calls for, whichever spline it belongs to."""
         limits = self._limits
         shown = self._shown.level if self._shown is not None else Level.OK
         easier = 1.0 - limits.hysteresis
-        larger = max(evidence.index)
-        if larger >= limits.error_index * (easier if shown is Level.ERROR else 1.0):
+        readings = [(max(evidence.index), limits.warn_index, limits.error_index)]
+        if evidence.transmission_error is not None:
+            error = max(evidence.transmission_error)
+            readings.append((error, limits.warn_transmission_error, limits.error_transmission_error))
+        if any(value >= error * (easier if shown is Level.ERROR else 1.0) for value, _, error in readings):
             return Level.ERROR
-        return Level.WARN if larger >= limits.warn_index * (easier if shown > Level.OK else 1.0) else Level.OK
+        reached = any(value >= warn * (easier if shown > Level.OK else 1.0) for value, warn, _ in readings)
+        return Level.WARN if reached else Level.OK
 
-    def _named(self, component: Component, level: Level, evidence: Identification) -> Verdict:
-        reason = describe_component(component, level, evidence, self._limits, self._motor_side)
-        return Verdict.naming(component, level, reason)
+    def _named(self, component: Component, level: Level, evidence: Identification, cause: Cause) -> Verdict:
+        reason = describe_component(component, level, cause, evidence, self._limits, self._motor_side)
+        return Verdict.naming(component, level, reason, cause)
 
     @staticmethod
     def _undetermined(reason: str, level: Level = Level.WARN) -> Verdict:

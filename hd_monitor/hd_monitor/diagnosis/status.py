@@ -56,6 +56,7 @@ def status_of(assessment: Assessment, joint: str) -> Status:
     values = [
         ("joint", joint),
         ("component", verdict.component.value),
+        ("cause", verdict.cause.value),
         ("fault_code", verdict.fault_code.value),
         ("reason", verdict.reason),
         ("speed (rpm)", _number(assessment.speed, 1)),
@@ -64,9 +65,12 @@ def status_of(assessment: Assessment, joint: str) -> Status:
         ("flexspline index std (%)", _number(100.0 * found.index_std.flexspline)),
         ("circular spline index (%)", _number(100.0 * found.index.circular_spline)),
         ("circular spline index std (%)", _number(100.0 * found.index_std.circular_spline)),
+        *_errors(found),
         ("index kind", kind),
         ("warn limit (%)", _number(100.0 * limits.warn_index)),
         ("error limit (%)", _number(100.0 * limits.error_index)),
+        ("warn limit (arcmin)", _number(limits.warn_transmission_error)),
+        ("error limit (arcmin)", _number(limits.error_transmission_error)),
         ("travel (deg)", _number(math.degrees(found.travel), 1)),
         ("travel needed (deg)", _number(math.degrees(needed), 1)),
         ("signal to noise (dB)", _number(found.signal_to_noise, 1)),
@@ -91,6 +95,21 @@ def status_of(assessment: Assessment, joint: str) -> Status:
         hardware_id=assessment.settings.serial,
         values=tuple(values),
     )
+
+
+def _errors(found: Identification) -> list[tuple[str, str]]:
+    """Transmission errors, where they are estimated."""
+    error, std = found.transmission_error, found.transmission_error_std
+    if error is None or std is None:
+        return []
+    return [
+        entry
+        for part in ("flexspline", "circular_spline")
+        for entry in (
+            (f"{part.replace('_', ' ')} transmission error (arcmin)", _number(getattr(error, part))),
+            (f"{part.replace('_', ' ')} transmission error std (arcmin)", _number(getattr(std, part))),
+        )
+    ]
 
 
 def _number(value: float, digits: int = 3) -> str:

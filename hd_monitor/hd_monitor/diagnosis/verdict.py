@@ -15,6 +15,16 @@ class Component(StrEnum):
     UNDETERMINED = "undetermined"
 
 
+class Cause(StrEnum):
+    """What of a part is at fault."""
+
+    STIFFNESS = "stiffness"
+    TRANSMISSION_ERROR = "transmission_error"
+    EITHER = "either"
+    RELATIVE = "relative"
+    NONE = "none"
+
+
 class FaultCode(StrEnum):
     """Machine-readable reason of a status."""
 
@@ -55,14 +65,18 @@ class Verdict:
         The part named, the level and the code.
     reason : str
         One sentence for a technician.
+    cause : Cause
+        The reading that accuses the part: ``either`` where the data cannot tell, ``relative`` without torque, ``none``
+        where no part is accused.
     """
 
     component: Component
     level: Level
     fault_code: FaultCode
     reason: str
+    cause: Cause = Cause.NONE
 
     @classmethod
-    def naming(cls, component: Component, level: Level, reason: str) -> Self:
+    def naming(cls, component: Component, level: Level, reason: str, cause: Cause = Cause.NONE) -> Self:
         """Return the verdict whose fault code says no more than its component."""
-        return cls(component=component, level=level, fault_code=_FAULT_CODES[component], reason=reason)
+        return cls(component=component, level=level, fault_code=_FAULT_CODES[component], reason=reason, cause=cause)

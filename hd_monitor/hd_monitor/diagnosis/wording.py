@@ -6,7 +6,10 @@ from ..identification.result import Identification
 from ..settings import DiagnosisSettings
 from .limitations import describe_limitation
 from .probability import Probabilities
-from .verdict import Component, Level
+from .verdict import Cause, Component, Level
+
+_VAGUE = 0.2
+"""Standard deviation of an index over the warn limit from which the two kinds of reading are not separated."""
 
 PART_NAMES = {
     Component.FLEXSPLINE: "flexspline",
@@ -31,6 +34,31 @@ def _indexes(evidence: Identification) -> str:
     )
 
 
+def _errors(evidence: Identification) -> str:
+    error, std = evidence.transmission_error, evidence.transmission_error_std
+    if error is None or std is None:
+        return ""
+    return (
+        f"transmission error of the flexspline {_arcmin(error.flexspline, std.flexspline)}, "
+        f"of the circular spline {_arcmin(error.circular_spline, std.circular_spline)}"
+    )
+
+
+def _arcmin(value: float, std: float) -> str:
+    return f"{value:.2f}' ± {max(std, 0.01):.2f}'"
+
+
+def _readings(cause: Cause, level: Level, evidence: Identification, limits: DiagnosisSettings) -> str:
+    """List the readings with their limit at a level, those that accuse a part first."""
+    of_level = {Level.ERROR: (limits.error_index, limits.error_transmission_error)}
+    index_limit, error_limit = of_level.get(level, (limits.warn_index, limits.warn_transmission_error))
+    word = f"{level.name.lower()} limit" if level > Level.OK else "limit"
+    readings = [f"{_indexes(evidence)}, {word} {_percent(index_limit)}"]
+    if errors := _errors(evidence):
+        readings.append(f"{errors}, {word} {error_limit:g}'")
+    return "; ".join(readings[::-1] if cause is Cause.TRANSMISSION_ERROR else readings)
+
+
 def _with_doubts(sentence: str, evidence: Identification) -> str:
     return "; ".join([sentence, *map(describe_limitation, evidence.doubts)])
 
@@ -38,23 +66,21 @@ def _with_doubts(sentence: str, evidence: Identification) -> str:
 def describe_component(
     component: Component,
     level: Level,
+    cause: Cause,
     evidence: Identification,
     limits: DiagnosisSettings,
     motor_side: Component,
 ) -> str:
-    """Say which part is at fault and by how much its index exceeds the limit.
+    """Say which part is at fault and by how much its reading exceeds the limit.
 
     `motor_side` is the spline whose line is exactly twice per wave-generator revolution, as the motor's own ripple is.
     """
     if component is Component.NONE:
-        return _with_doubts(
-            f"Both splines are sound: {_indexes(evidence)}, limit {_percent(limits.warn_index)}", evidence
-        )
-    limit, word = (limits.error_index, "defective") if level is Level.ERROR else (limits.warn_index, "suspect")
-    verb = "are" if component is Component.BOTH else "is"
-    sentence = (
-        f"The {PART_NAMES[component]} {verb} {word}: {_indexes(evidence)}, {level.name.lower()} limit {_percent(limit)}"
-    )
+        return _with_doubts(f"Both splines are sound: {_readings(cause, level, evidence, limits)}", evidence)
+    word, verb = "defective" if level is Level.ERROR else "suspect", "are" if component is Component.BOTH else "is"
+    sentence = f"The {PART_NAMES[component]} {verb} {word}: {_readings(cause, level, evidence, limits)}"
+    if cause is Cause.EITHER:
+        sentence += "; whether its stiffness or its transmission error is at fault would show at another torque"
     if component in (motor_side, Component.BOTH):
         part = PART_NAMES[motor_side]
         sentence += f"; wave generator, motor shaft and motor ripple share the {part}'s line: check them too"
@@ -76,9 +102,15 @@ def describe_relative(component: Component, evidence: Identification) -> str:
     )
 
 
-def describe_doubtful_limit(evidence: Identification, limit: float) -> str:
-    """Say that the index may lie on either side of the limit, and what would help."""
+def describe_doubtful_limit(evidence: Identification, limits: DiagnosisSettings, limit: float) -> str:
+    """Say that a reading may lie on either side of its limit, and what would help."""
     index, std = max(zip(evidence.index, evidence.index_std, strict=True))
+    if evidence.transmission_error is not None and std > _VAGUE * limits.warn_index:
+        return _with_doubts(
+            f"A fluctuating stiffness and a transmission error look alike in this motion ({_indexes(evidence)}; "
+            f"{_errors(evidence)}): a change of torque or of speed would tell them apart",
+            evidence,
+        )
     factor = (std / max(abs(index - limit), 0.1 * limit)) ** 2
     return _with_doubts(
         f"The larger index, {_with_std(index, std)}, is close to the limit of {_percent(limit)}; "

@@ -44,6 +44,11 @@ class Identification:
         Their standard deviations.
     index_correlation : float
         Correlation of the two indexes' errors, -1 to 1: near ±1 when the travel hardly separates the lines.
+    transmission_error, transmission_error_std : LinePair or None
+        Transmission error of each spline [arcmin peak to peak], its harmonics' root-sum-square, and its standard
+        deviation; None where none is fitted along.
+    correlation : ndarray or None, shape (4, 4)
+        Correlation of the errors of both indexes and both transmission errors, the circular spline's first.
     relative : bool
         True if the transmitted torque (or the transfer function) is unknown: then only the ratio of the two indexes
         means something, not their sizes.
@@ -74,6 +79,9 @@ class Identification:
     index: LinePair
     index_std: LinePair
     index_correlation: float = 0.0
+    transmission_error: LinePair | None = None
+    transmission_error_std: LinePair | None = None
+    correlation: FloatArray | None = None
     relative: bool = False
     lines: tuple[LineEstimate, ...] = ()
     travel: float = 0.0

@@ -27,18 +27,19 @@ def plain(value: Any) -> Any:
 
 
 def verdict_entry(assessment: Assessment) -> dict[str, Any]:
-    """Write the verdict and the numbers it rests on; indexes are fractions."""
+    """Write the verdict and the numbers it rests on: indexes as fractions, transmission errors in arcmin."""
     verdict, found, quality = assessment.verdict, assessment.identification, assessment.quality
     return {
         "component": verdict.component.value,
         "level": int(verdict.level),
         "level_name": Level(verdict.level).name,
         "fault_code": verdict.fault_code.value,
+        "cause": verdict.cause.value,
         "reason": verdict.reason,
         **{
-            f"{spline}_{name}": getattr(getattr(found, name), spline) if found else None
+            f"{spline}_{name}": getattr(getattr(found, name, None), spline, None)
             for spline in ("flexspline", "circular_spline")
-            for name in ("index", "index_std")
+            for name in ("index", "index_std", "transmission_error", "transmission_error_std")
         },
         "travel_deg": math.degrees(found.travel) if found else 0.0,
         "samples": quality.samples,

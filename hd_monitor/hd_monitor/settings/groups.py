@@ -131,12 +131,22 @@ class DiagnosisSettings:
 
     warn_index: float = number(0.05, "", 0.0, 1.0, "stiffness index (fraction) above which a spline is suspect")
     error_index: float = number(0.08, "", 0.0, 2.0, "stiffness index (fraction) above which a spline is defective")
+    warn_transmission_error: float = number(
+        1.5,
+        "arcmin",
+        0.01,
+        600.0,
+        "transmission error, peak to peak, above which a spline is suspect, if one is estimated",
+    )
+    error_transmission_error: float = number(
+        3.0, "arcmin", 0.01, 600.0, "transmission error, peak to peak, above which a spline is defective"
+    )
     both_ratio: float = number(
         0.87,
         "",
         0.0,
         1.0,
-        "both splines are named where the smaller index is above the limit and at least this part of the larger",
+        "both splines are named where the smaller reading is above the limit and at least this part of the larger",
     )
     confidence: float = number(
         0.99,
@@ -154,11 +164,13 @@ class DiagnosisSettings:
 
     def __post_init__(self) -> None:
         """Refuse limits that contradict each other."""
-        if self.error_index < self.warn_index:
-            raise ParameterError(
-                f"diagnosis.error_index = {self.error_index} is below diagnosis.warn_index = {self.warn_index}; an "
-                "error must be worse than a warning"
-            )
+        for reading in ("index", "transmission_error"):
+            warn, error = getattr(self, f"warn_{reading}"), getattr(self, f"error_{reading}")
+            if error < warn:
+                raise ParameterError(
+                    f"diagnosis.error_{reading} = {error} is below diagnosis.warn_{reading} = {warn}; an error must be "
+                    "worse than a warning"
+                )
         if self.confirm_count > self.confirm_window:
             raise ParameterError(
                 f"diagnosis.confirm_count = {self.confirm_count} can never be reached within "
@@ -173,6 +185,15 @@ PARAMETERS = (
         circular_spline_teeth=number(162, "", 1, 10_000, "teeth of the circular spline, z2 (usually z1 + 2)"),
         mount=choice("circular_spline_fixed", Mount, "the stationary spline"),
         serial=plain("", "serial number of the reducer, shown as hardware_id"),
+        transmission_error=number(
+            0.0,
+            "arcmin",
+            0.0,
+            60.0,
+            "transmission error, peak to peak, that a sound unit may have: the catalogue's positional accuracy (1.0 "
+            "for size 20 and above); it is then estimated beside the stiffness indexes, which it resembles; 0: there "
+            "is none, as in the paper",
+        ),
     ),
     *table(
         "dynamics.",

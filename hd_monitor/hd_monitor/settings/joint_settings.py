@@ -26,6 +26,7 @@ class JointSettings:
     values: tuple[tuple[str, Value], ...]
     reducer: Reducer
     serial: str
+    transmission_error: float
     dynamics: Dynamics
     refine_dynamics: bool
     input: InputSettings
@@ -52,6 +53,7 @@ class JointSettings:
             values=tuple(values.items()),
             reducer=fill_group(values, "reducer", Reducer),
             serial=str(values["reducer.serial"]),
+            transmission_error=float(values["reducer.transmission_error"]),  # type: ignore[arg-type]
             dynamics=fill_group(values, "dynamics", Dynamics),
             refine_dynamics=bool(values["dynamics.refine"]),
             input=fill_group(values, "input", InputSettings),

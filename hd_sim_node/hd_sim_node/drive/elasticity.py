@@ -11,8 +11,7 @@ from scipy.optimize import brentq
 
 from hd_monitor.errors import ParameterError
 from hd_monitor.parameter import number
-
-from .transmission_error import ARCMIN
+from hd_monitor.reducer import ARCMIN
 
 ROUNDING = 0.1
 """Width over which the stiffness passes from one step to the next, as a fraction of the twist at the corner. Measured

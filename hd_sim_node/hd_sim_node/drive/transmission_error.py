@@ -1,6 +1,5 @@
 """Transmission error: by how much the output lags and leads the ideal ratio, line by line."""
 
-import math
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -9,10 +8,7 @@ from numpy.polynomial.polynomial import polyval
 
 from hd_monitor.arrays import ComplexArray, FloatArray
 from hd_monitor.errors import ParameterError
-from hd_monitor.reducer import Reducer
-
-ARCMIN = math.pi / 10_800.0
-"""One minute of arc in radians."""
+from hd_monitor.reducer import ARCMIN, Reducer
 
 
 class ErrorSignal(NamedTuple):

@@ -60,7 +60,11 @@ def test_a_torque_sensor_is_a_source_of_its_own():
 
 def test_every_parameter_is_a_typed_field_of_its_group():
     joint = settings()
-    elsewhere = {"reducer.serial": joint.serial, "dynamics.refine": joint.refine_dynamics}
+    elsewhere = {
+        "reducer.serial": joint.serial,
+        "reducer.transmission_error": joint.transmission_error,
+        "dynamics.refine": joint.refine_dynamics,
+    }
     for parameter in PARAMETERS:
         group, _, field = parameter.name.partition(".")
         value = elsewhere[parameter.name] if parameter.name in elsewhere else getattr(getattr(joint, group), field)

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from tests.hd_sim_node.drive import plain
 
 from hd_monitor.model import Dynamics, ParametricModel, StiffnessSeries, Torque
+from hd_monitor.reducer import ARCMIN
 from hd_sim_node.drive.effects import Effects, laws
 from hd_sim_node.drive.elasticity import Elasticity, Hysteresis, characteristic
 from hd_sim_node.drive.equation import State, march
@@ -18,7 +19,7 @@ from hd_sim_node.drive.friction import Friction
 from hd_sim_node.drive.rig import Rig, advance_together
 from hd_sim_node.drive.slow_change import DefectGrowth, Drift
 from hd_sim_node.drive.surroundings import ChangingInertia, Surroundings
-from hd_sim_node.drive.transmission_error import ARCMIN, ErrorSeries, TransmissionErrors
+from hd_sim_node.drive.transmission_error import ErrorSeries, TransmissionErrors
 from hd_sim_node.motion.programme import SpeedProgramme
 
 BETA1, BETA2 = ((0.06, 0.03, 0.02), (0.3, 1.7, 5.1)), ((0.03, 0.015), (0.9, 2.1))

@@ -98,6 +98,8 @@ class Problem:
     floor : NoiseFloor
     active : ndarray of bool, shape (unknowns,)
         Unknowns that may move.
+    patience : int
+        Factor on the rounds of a fit.
     """
 
     segments: Sequence[Segment]
@@ -105,6 +107,7 @@ class Problem:
     prior: Information
     floor: NoiseFloor
     active: BoolArray
+    patience: int = 1
 
     def at(self, values: FloatArray) -> Fit:
         """Evaluate a point."""
@@ -132,7 +135,7 @@ class Problem:
 
     def solve(self, start: FloatArray, *, rounds: int) -> Fit:
         """Take Gauss-Newton steps from `start`, at most `rounds`."""
-        fit = self._descend(self.at(start), rounds)
+        fit = self._descend(self.at(start), self.patience * rounds)
         on_bound = self.active & (np.abs(fit.values) >= self.predictor.unknowns.bounds())
         return replace(fit, status=FitStatus.ON_BOUND) if on_bound.any() else fit
 

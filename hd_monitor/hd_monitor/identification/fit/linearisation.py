@@ -8,9 +8,13 @@ import numpy as np
 from ...arrays import FloatArray
 from ...model.oscillator import GAUSS_OFFSETS, Oscillator
 from ...model.parameters import Dynamics
+from ...reducer import ARCMIN
 from ..segment.path import Path
 from ..segment.segment import Segment
 from .unknowns import Unknowns
+
+_ERROR_UNIT = 0.5 * ARCMIN
+"""Amplitude [rad] of one arcmin peak to peak."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -103,29 +107,47 @@ class _Along:
         self._unknowns = unknowns = predictor.unknowns
         self._path, self._dynamics = path, dynamics
         self._beta = values[unknowns.stiffness]
-        self._lines = path.lines_after(float(values[unknowns.delay]))
+        self._lines = lines = path.lines_after(float(values[unknowns.delay]))
         self._load_unit = predictor.reference_torque / predictor.given.inertia
         self._torque = math.exp(values[unknowns.torque]) / predictor.given.inertia * path.torque
-        self.stiffness = np.asarray(1.0 + self._lines @ self._beta)
+        self.stiffness = np.asarray(1.0 + lines @ self._beta)
         inertial = values[unknowns.inertia] * path.acceleration
         self.excitation = np.asarray(self._torque + self._load_unit * (path.loads @ values[unknowns.load]) - inertial)
+        self._errors = bool(unknowns.transmission_error)
+        if self._errors:
+            # The error e winds the spring up as the vibration θ does: both forces act on θ + e
+            series = _ERROR_UNIT * values[unknowns.displacement]
+            slopes = path.turned(series)
+            omega, damping = dynamics.angular_frequency, 2.0 * dynamics.damping_ratio * dynamics.angular_frequency
+            self._error = np.asarray(lines @ series)
+            self._error_slope = np.asarray(lines @ slopes)
+            self._error_bend = np.asarray(lines @ path.turned(slopes))
+            self._error_rate = path.speed * self._error_slope
+            self.excitation -= omega**2 * self.stiffness * self._error + damping * self._error_rate
 
     def forcing(self, theta: FloatArray, theta_dot: FloatArray) -> FloatArray:
         """Inputs [rad/s² per unit of each unknown] where θ and θ' are as given, shape (..., unknowns)."""
         unknowns, path = self._unknowns, self._path
         omega = self._dynamics.angular_frequency
-        spring = -(omega**2) * theta
+        damping = 2.0 * self._dynamics.damping_ratio * omega
+        twist, rate = (theta + self._error, theta_dot + self._error_rate) if self._errors else (theta, theta_dot)
+        spring = -(omega**2) * twist
         forcing = np.empty((*theta.shape, unknowns.size))
         np.multiply(self._lines, spring[..., None], out=forcing[..., unknowns.stiffness])
         np.multiply(path.loads, self._load_unit, out=forcing[..., unknowns.load])
-        friction = -2.0 * self._dynamics.damping_ratio * omega * theta_dot
+        friction = -damping * rate
         forcing[..., unknowns.frequency] = friction + 2.0 * spring * self.stiffness
         forcing[..., unknowns.damping] = friction
         forcing[..., unknowns.torque] = self._torque
         forcing[..., unknowns.inertia] = -path.acceleration
-        # d cos = -sin, d(-sin) = -cos: the other column of the pair, with its sign
-        turned = (path.rates * self._beta).reshape(2, 2, -1)[:, ::-1] * [[-1.0], [1.0]]
-        forcing[..., unknowns.delay] = spring * path.speed * (self._lines @ turned.ravel())
+        forcing[..., unknowns.delay] = spring * path.speed * (self._lines @ path.turned(self._beta))
+        if self._errors:
+            stiff = -(omega**2) * self.stiffness
+            errors = forcing[..., unknowns.displacement]
+            np.multiply(self._lines, (_ERROR_UNIT * stiff)[..., None], out=errors)
+            errors -= (_ERROR_UNIT * damping * path.speed)[..., None] * path.slopes(self._lines)
+            bending = damping * path.speed * self._error_bend
+            forcing[..., unknowns.delay] += path.speed * (stiff * self._error_slope - bending)
         return forcing
 
 

@@ -41,7 +41,7 @@ def newest_segments(segments: Sequence[Segment]) -> list[Segment]:
 
 def load_start(unknowns: Unknowns, values: FloatArray, load: complex) -> FloatArray:
     """Return values without any defects, and with a load twice per output revolution."""
-    start = values * ~unknowns.mask(unknowns.stiffness, unknowns.load)
+    start = values * ~unknowns.mask(unknowns.stiffness, unknowns.load, unknowns.displacement)
     start[unknowns.load_line(2)] = load.real, load.imag
     return start
 

@@ -30,10 +30,14 @@ class Unknowns:
         Line pairs, k = 1 … harmonics.
     load_orders : tuple of int
         Cycles per output revolution of the unknown load fluctuations.
+    transmission_error : float
+        Size [arcmin peak to peak] of the transmission error that is expected at each line before any data; 0: there is
+        none, and none is fitted.
     """
 
     harmonics: int
     load_orders: tuple[int, ...]
+    transmission_error: float = 0.0
 
     @property
     def circular_spline(self) -> slice:
@@ -56,9 +60,25 @@ class Unknowns:
         return slice(4 * self.harmonics, 4 * self.harmonics + 2 * len(self.load_orders))
 
     @property
+    def circular_spline_error(self) -> slice:
+        """Place of the phasors of the circular spline's transmission error [arcmin peak to peak], one a harmonic."""
+        return slice(self.load.stop, self.load.stop + (2 * self.harmonics if self.transmission_error else 0))
+
+    @property
+    def flexspline_error(self) -> slice:
+        """Place of the phasors of the flexspline's transmission error [arcmin peak to peak]."""
+        circular_spline = self.circular_spline_error
+        return slice(circular_spline.stop, 2 * circular_spline.stop - circular_spline.start)
+
+    @property
+    def displacement(self) -> slice:
+        """Place of all transmission errors; empty where none is expected."""
+        return slice(self.circular_spline_error.start, self.flexspline_error.stop)
+
+    @property
     def frequency(self) -> int:
         """Place of ln(fn / given fn)."""
-        return 4 * self.harmonics + 2 * len(self.load_orders)
+        return int(self.displacement.stop)
 
     @property
     def damping(self) -> int:
@@ -121,6 +141,7 @@ class Unknowns:
             # place, standard deviation before any data, bound, linear range
             (self.stiffness, 0.3, math.inf, 0.05),
             (self.load, 2.0, math.inf, 1.0),
+            (self.displacement, self.transmission_error / math.sqrt(2.0), math.inf, 5.0),
             (self.frequency, 0.1, math.log(FREQUENCY_MARGIN), 0.01),
             (self.damping, 0.5, 1.5, 0.3),
             (self.torque, 1.5, 4.0, 1.0),

@@ -61,6 +61,16 @@ class Path:
         turned = np.concatenate([lines[..., 1:, :], -lines[..., :1, :]], axis=-2)
         return np.asarray(np.cos(shift) * self.lines + np.sin(shift) * turned.reshape(self.lines.shape))
 
+    def turned(self, series: FloatArray) -> FloatArray:
+        """Return the series whose lines are the derivative, by the output angle, of those of `series`."""
+        # d cos = -sin, d(-sin) = -cos: the other column of the pair, with its sign
+        return np.asarray((self.rates * series).reshape(2, 2, -1)[:, ::-1] * [[-1.0], [1.0]]).ravel()
+
+    def slopes(self, lines: FloatArray) -> FloatArray:
+        """Return the derivative of lines by the output angle, column by column."""
+        pairs = (lines * self.rates).reshape(*lines.shape[:-1], 2, 2, -1)
+        return np.asarray(np.concatenate([pairs[..., 1:, :], -pairs[..., :1, :]], axis=-2).reshape(lines.shape))
+
 
 def paths_along(
     motion: Motion, reducer: Reducer, harmonics: int, load_orders: tuple[int, ...], substeps: int

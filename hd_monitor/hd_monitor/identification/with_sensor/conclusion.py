@@ -8,7 +8,7 @@ from ...arrays import FloatArray
 from ...model.parameters import ParametricModel, StiffnessSeries, Torque
 from ..checks.residual import LineResidual
 from ..fit.gauss_newton import Fit
-from ..fit.indexes import stiffness_indexes
+from ..fit.indexes import stiffness_indexes, transmission_errors
 from ..fit.unknowns import Unknowns
 from ..result import Identification
 from .context import Context
@@ -29,6 +29,7 @@ def conclude(context: Context, state: State, fit: Fit) -> Identification:
     systematic = _systematic(u, values, residual, coverage.span)
     covariance = noise + systematic
     indexes = stiffness_indexes(u, values, noise, systematic)
+    errors = transmission_errors(u, values, noise, systematic)
     dynamics = u.dynamics(context.given, values)
     loads = u.phasors(values, u.load)
     strongest = int(np.argmax(np.abs(loads)))
@@ -47,6 +48,9 @@ def conclude(context: Context, state: State, fit: Fit) -> Identification:
         index=indexes.index,
         index_std=indexes.std,
         index_correlation=indexes.correlation,
+        transmission_error=errors.size if errors else None,
+        transmission_error_std=errors.std if errors else None,
+        correlation=errors.correlation if errors else None,
         relative=state.relative,
         lines=measure_lines(state.recent, reducer, u.harmonics, state.floor),
         travel=coverage.span,

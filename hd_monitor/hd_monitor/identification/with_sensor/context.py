@@ -24,6 +24,9 @@ NOMINAL_INDEX = 0.05
 
 _TRIAL_WIND_UP = 1e-3  # rad
 
+_PATIENCE = 3
+"""Factor on the rounds of a fit with transmission errors: where they resemble the stiffness, steps follow a ridge."""
+
 
 class Unexplained(NamedTuple):
     """What fits leave: the noise floor, and what exceeds it at the lines."""
@@ -53,7 +56,11 @@ class Context:
     @classmethod
     def of(cls, settings: JointSettings) -> "Context":
         """Return the context that a joint's settings make."""
-        unknowns = Unknowns(harmonics=settings.analysis.harmonics, load_orders=tuple(TORQUE_LINES))
+        unknowns = Unknowns(
+            harmonics=settings.analysis.harmonics,
+            load_orders=tuple(TORQUE_LINES),
+            transmission_error=settings.transmission_error,
+        )
         builder = SegmentBuilder(
             reducer=settings.reducer,
             harmonics=unknowns.harmonics,
@@ -112,6 +119,7 @@ class Context:
             prior=prior,
             floor=signal_level(segments) if state.floor is None else state.floor,
             active=state.active,
+            patience=_PATIENCE if self.unknowns.transmission_error else 1,
         )
 
     def problem_of_all(self, state: State) -> Problem:

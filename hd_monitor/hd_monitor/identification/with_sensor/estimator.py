@@ -109,7 +109,9 @@ class Estimator:
             small, best = multistart_newest(context.problem_of_all(state), [state.values], rounds=_FEW_ROUNDS)
             return restart(context, state, small, [best.values], _FEW_ROUNDS)
         young = state.seconds <= WINDOW
-        if young and state.seconds >= 2.0 * state.schedule.restarted:
+        # Where errors resemble the stiffness, what was linearised at other values soon misleads
+        ambiguous = bool(context.unknowns.transmission_error)
+        if young and (ambiguous or state.seconds >= 2.0 * state.schedule.restarted):
             return self._fit_all(state, state.values)
         fit = context.problem(state, state.recent[-1:], context.known(state)).solve(state.values, rounds=_UPDATE_ROUNDS)
         change = fit.values - state.values

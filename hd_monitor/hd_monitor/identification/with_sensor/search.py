@@ -65,7 +65,7 @@ def turn_sensor(context: Context, state: State, fit: Fit) -> tuple[State, Fit]:
         active=active,
         setup=replace(state.setup, mounting=-state.setup.mounting),
     )
-    start = np.where(active, fit.values, 0.0) * np.where(u.mask(u.stiffness), -1.0, 1.0)
+    start = np.where(active, fit.values, 0.0) * np.where(u.mask(u.stiffness, u.displacement), -1.0, 1.0)
     starts = load_starts(u, start, thorough=True)
     small, best = multistart_newest(context.problem_of_all(turned), starts, rounds=_ROUNDS)
     if not is_better(replace(small, segments=newest_segments(state.recent)), best, fit.values):

@@ -83,7 +83,7 @@ class State:
         """Return the state before any data."""
         return cls(
             values=unknowns.zero(),
-            active=unknowns.mask(unknowns.stiffness, unknowns.load, unknowns.inertia),
+            active=unknowns.mask(unknowns.stiffness, unknowns.load, unknowns.displacement, unknowns.inertia),
             information=Information.none(unknowns.size),
             floor=None,
             residual=LineResidual.empty(unknowns.harmonics),

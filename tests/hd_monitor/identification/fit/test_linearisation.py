@@ -10,7 +10,7 @@ from hd_monitor.model import Dynamics
 from hd_monitor.reducer import Reducer
 
 REDUCER, DYNAMICS = Reducer(), Dynamics()
-UNKNOWNS = Unknowns(harmonics=2, load_orders=(1, 2))
+UNKNOWNS = Unknowns(harmonics=2, load_orders=(1, 2), transmission_error=1.0)
 RATE, TORQUE = 1000.0, 10.0
 BUILDER = SegmentBuilder(reducer=REDUCER, harmonics=2, load_orders=(1, 2), natural_frequency=55.0)
 PREDICTOR = Predictor(unknowns=UNKNOWNS, given=DYNAMICS, reference_torque=TORQUE)
@@ -26,6 +26,7 @@ def values_at_random(seed):
     values = UNKNOWNS.zero()
     values[UNKNOWNS.stiffness] = 0.05 * rng.standard_normal(8)
     values[UNKNOWNS.load] = rng.standard_normal(4)
+    values[UNKNOWNS.displacement] = 0.4 * rng.standard_normal(8)
     values[UNKNOWNS.frequency], values[UNKNOWNS.damping] = 0.03, -0.2
     values[UNKNOWNS.torque], values[UNKNOWNS.delay], values[UNKNOWNS.inertia] = 0.1, 0.002, 0.6
     return values
@@ -46,11 +47,10 @@ def segment(acceleration):
 
 
 def test_prediction_agrees_with_an_adaptive_integrator():
-    """Everything at once: both splines, two loads, other dynamics, torque, lag and inertia."""
+    """Everything at once: both splines' stiffness and error, two loads, other dynamics, torque, lag and inertia."""
     values = values_at_random(1)
-    phasors = {
-        part: UNKNOWNS.phasors(values, getattr(UNKNOWNS, part)) for part in ("circular_spline", "flexspline", "load")
-    }
+    parts = ("circular_spline", "flexspline", "load", "circular_spline_error", "flexspline_error")
+    phasors = {part: UNKNOWNS.phasors(values, getattr(UNKNOWNS, part)) for part in parts}
     dynamics = UNKNOWNS.dynamics(DYNAMICS, values)
     omega, zeta = dynamics.angular_frequency, dynamics.damping_ratio
 
@@ -64,6 +64,16 @@ def test_prediction_agrees_with_an_adaptive_integrator():
             total += sum((b * np.exp(1j * k * order * late)).real for k, b in enumerate(series, start=1))
         return total
 
+    def error(t):
+        """e [rad] and its rate [rad/s] at the angle that the output has after the lag."""
+        late, speed = motion(t)[0] + values[UNKNOWNS.delay] * motion(t)[1], motion(t)[1]
+        total, rate = 0.0, 0.0
+        for order, part in zip(REDUCER.output_orders, parts[3:], strict=True):
+            for k, b in enumerate(phasors[part] / 2.0 * np.pi / 180.0 / 60.0, start=1):
+                turning = b * np.exp(1j * k * order * late)
+                total, rate = total + turning.real, rate + (1j * k * order * speed * turning).real
+        return total, rate
+
     def drive(t):
         angle, _, own = motion(t)
         load = sum((b * np.exp(1j * m * angle)).real for m, b in zip((1, 2), phasors["load"], strict=True))
@@ -71,7 +81,8 @@ def test_prediction_agrees_with_an_adaptive_integrator():
         return torque / DYNAMICS.inertia - values[UNKNOWNS.inertia] * own
 
     def acceleration(t, x, v):
-        return drive(t) - 2.0 * zeta * omega * v - omega**2 * stiffness(t) * x
+        e, de = error(t)
+        return drive(t) - 2.0 * zeta * omega * (v + de) - omega**2 * stiffness(t) * (x + e)
 
     times = np.arange(1200) / RATE
     start = [drive(0.0) / omega**2, 0.1]
@@ -119,7 +130,7 @@ def test_moving_on_without_a_simulation_is_right_to_second_order():
     values = values_at_random(4)
     part = segment(3.0 * rng.standard_normal(1200))
     here = PREDICTOR.linearise(part, values)
-    step = 1e-3 * rng.standard_normal(UNKNOWNS.size) * UNKNOWNS.mask(UNKNOWNS.stiffness, UNKNOWNS.load)
+    step = 4e-3 * rng.standard_normal(UNKNOWNS.size) * UNKNOWNS.mask(UNKNOWNS.stiffness, UNKNOWNS.load)
     differences = []
     for size in (1.0, 0.5):
         there = PREDICTOR.linearise(part, values + size * step)
