@@ -161,7 +161,10 @@ class Monitor:
 
     def _pack(self, stamp: int, verdict: Verdict, assembled: AssembledPeriod | None) -> Assessment:
         evidence = self._evidence
-        quality = self._recorder.quality(out_of_order=self._intake.out_of_order, clock_jumps=self._intake.clock_jumps)
+        intake = self._intake
+        quality = self._recorder.quality(
+            out_of_order=intake.out_of_order, clock_jumps=intake.clock_jumps, dropped=intake.dropped
+        )
         return Assessment(
             stamp=stamp,
             settings=self.settings,

@@ -1,9 +1,13 @@
 """Every kind of bad input is counted and tolerated, and named where it prevents a verdict."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
-from tests.hd_monitor.monitored import BLOCK, EPOCH, SETTINGS, Recording, latest, run
+from tests.hd_monitor.monitored import BLOCK, EPOCH, RATE, SETTINGS, Recording, latest, run
 
+from hd_monitor.arrays import FloatArray, IntArray
+from hd_monitor.contract import Block
 from hd_monitor.diagnosis.verdict import Component, FaultCode, Level
 from hd_monitor.monitor import Monitor
 from hd_monitor.settings import JointSettings
@@ -92,6 +96,67 @@ def test_two_publishers_of_one_topic_are_noticed(recording: Recording) -> None:
     assert assessment.quality.rejected == len(recording.blocks())
     assert "two publishers" in assessment.quality.last_fault
     assert assessment.verdict.component is Component.FLEXSPLINE
+
+
+@pytest.mark.parametrize("lag", [20, 50, 70])
+def test_blocks_of_another_publisher_are_left_out(recording: Recording, lag: int) -> None:
+    others = [
+        Block(int(recording.stamps[first]), 1.0 / RATE, 500 + first // BLOCK, recording.values[first : first + BLOCK])
+        for first in range(lag, recording.values.size - BLOCK, BLOCK)
+    ]
+    mixed = [block for pair in zip(recording.blocks(), others, strict=False) for block in pair]
+    assessment = latest(run(recording, mixed))
+    assert assessment.quality.rejected >= len(others) - 1
+    assert "two publishers" in assessment.quality.last_fault
+    assert assessment.verdict.component is Component.FLEXSPLINE
+
+
+def samples_only(recording: Recording, stamps: IntArray, values: FloatArray) -> Monitor:
+    """Feed single samples in small groups, as a node does."""
+    monitor = Monitor(JointSettings.from_mapping({"input.source": "accel_stamped"}))
+    recording.feed_motion(monitor)
+    for first in range(0, stamps.size, 50):
+        monitor.add(Quantity.VIBRATION, stamps[first : first + 50], values[first : first + 50])
+    monitor.finish()
+    return monitor
+
+
+@pytest.mark.parametrize("spacing", [0, 20_000, 100_000, 400_000])
+def test_a_fifo_stamped_as_it_is_read_gives_the_verdict(recording: Recording, spacing: int) -> None:
+    count = recording.stamps.size // 16 * 16
+    place = np.arange(count) % 16
+    stamps = recording.stamps[np.arange(count) - place + 15] + spacing * place
+    assessment = latest(samples_only(recording, stamps, recording.values[:count]))
+    assert assessment.quality.rate == pytest.approx(1000.0, rel=1e-6)
+    assert assessment.quality.gaps == 0
+    assert "bursts of 16" in assessment.quality.last_fault
+    assert assessment.verdict.component is Component.FLEXSPLINE
+
+
+@pytest.mark.parametrize("lag", [1_000, 20_000, 300_000])
+def test_alternating_samples_of_two_publishers_give_no_verdict(recording: Recording, lag: int) -> None:
+    stamps = np.column_stack([recording.stamps, recording.stamps + lag]).ravel()
+    values = np.column_stack([recording.values, -recording.values]).ravel()
+    assessment = latest(samples_only(recording, stamps, values))
+    assert assessment.verdict.fault_code is FaultCode.INPUT_INVALID
+    assert "2 publishers alternate" in assessment.verdict.reason
+    assert assessment.quality.dropped > 0
+
+
+def test_samples_in_heaps_a_microsecond_apart_cost_no_memory(recording: Recording) -> None:
+    heaps = np.sort(np.random.default_rng(0).integers(0, 12 * 10**9, recording.stamps.size // 10 + 1))
+    index = np.arange(recording.stamps.size)
+    tracemalloc.start()
+    try:
+        monitor = samples_only(
+            recording, np.sort(recording.stamps[0] + heaps[index // 10] + index % 10 * 1000), recording.values
+        )
+        _, peak = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert latest(monitor).verdict.fault_code is FaultCode.INPUT_INVALID
+    assert "1 µs apart" in latest(monitor).verdict.reason
+    assert peak < 10e6
 
 
 def test_a_stuck_sensor_gives_no_verdict(recording: Recording) -> None:

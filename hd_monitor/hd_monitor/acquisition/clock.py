@@ -7,6 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..arrays import FloatArray, IntArray
+from .bursts import find_bursts
 
 _EVEN = 0.02  # of a period: single differences of stamps as even as this count missing samples reliably
 _DISORDERED = 0.2  # of a period: sorted stamps more uneven than this were not sampled in that order
@@ -14,6 +15,7 @@ _SHARP = 0.17  # of a period: stamps nearer to the grid than this show their own
 _OUT_OF_PLACE = 0.55  # of a period: a stamp further from its place belongs to another one
 _REFINEMENTS = 4
 _SMOOTHING = 20  # samples over which heavy jitter is averaged before missing samples are counted
+_MOST_TRIED = 10_000  # excesses on which the guesses of the period are tried
 _DRIFT = 2e-3  # relative error of the first guess of the period under heavy jitter, at most
 
 
@@ -32,6 +34,8 @@ class Clock(NamedTuple):
         Standard deviation of the stamps about the grid [s].
     duplicates : int
         Samples left out because their stamp occurred before.
+    burst : int
+        Samples that were stamped together as they were read out; 1 if each had its own stamp.
     """
 
     order: npt.NDArray[np.intp]
@@ -40,6 +44,7 @@ class Clock(NamedTuple):
     period: float
     jitter: float
     duplicates: int
+    burst: int = 1
 
 
 def recover_clock(times: FloatArray, period: float | None = None) -> Clock | None:
@@ -78,6 +83,11 @@ def recover_clock(times: FloatArray, period: float | None = None) -> Clock | Non
     if typical <= 0.0:
         return None
     even = float(steps.max()) < (1.0 + _EVEN) * typical and float(steps.min()) > (1.0 - _EVEN) * typical
+    if not (rising and even) and (bursts := find_bursts(times)) is not None:
+        apart = times - (bursts.start + bursts.period * bursts.number)
+        return Clock(
+            np.arange(times.size), bursts.number, bursts.start, bursts.period, float(np.std(apart)), 0, bursts.size
+        )
     number = np.arange(t.size) if even else _number(t, steps, typical, period)  # mostly nothing is missing
     start, fitted = _line(number, t)
     apart = t - (start + fitted * number)
@@ -133,8 +143,8 @@ def _count_through_jitter(t: FloatArray, period: float, *, exact: bool) -> IntAr
     excess = _smooth((t - t[0]) / period - count, width)
     if not exact:
         drift = np.arange(-_DRIFT * t.size, _DRIFT * t.size + 0.25, 0.25) / t.size  # periods per sample
-        some = slice(None, None, max(1, width // 4))
-        whole = np.abs(np.exp(2j * np.pi * (excess[some] - drift[:, None] * count[some])).sum(axis=1))
+        some = slice(None, None, max(1, width // 4, t.size // _MOST_TRIED))
+        whole = [abs(np.exp(2j * np.pi * (excess[some] - each * count[some])).sum()) for each in drift.tolist()]
         excess = excess - drift[int(np.argmax(whole))] * count
     # The first sample's own jitter is in every excess: refer to where the excesses lie on average, not to it
     offset = float(np.angle(np.exp(2j * np.pi * excess).mean())) / (2.0 * np.pi)

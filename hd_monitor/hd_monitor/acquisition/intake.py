@@ -13,6 +13,7 @@ from .stream import StampedBuffer
 from .timeline import Period, Timeline
 
 _COLUMNS = {Quantity.VIBRATION: 1, Quantity.MOTION: 3, Quantity.TORQUE: 1}
+_OVERLAP = 0.51  # of the longer block's duration; of two publishers' blocks one lies nearer than that to the one before
 
 
 class Intake:
@@ -53,11 +54,15 @@ class Intake:
             self.newest[quantity] = int(stamps[-1])
 
     def add_block(self, block: Block) -> None:
-        """Add a block of vibration; one with number and stamp of the last one is a duplicate and is dropped."""
-        last, self._last = self._last, block
+        """Add a block of vibration; one that came before, or that overlaps another publisher's, is dropped."""
+        last = self._last
         self.newest[Quantity.VIBRATION] = block.stamp
-        if last is None or (block.sequence, block.stamp) != (last.sequence, last.stamp):
+        if last is None or not _overlap(last, block):
+            self._last = block
             self._blocks.append(block)
+        elif (block.sequence, block.stamp) != (last.sequence, last.stamp):
+            reason = f"block {block.sequence} covers the time of block {last.sequence}: are there two publishers?"
+            self._count(rejected=1, last_fault=reason)
         elif np.array_equal(block.samples, last.samples, equal_nan=True):
             self._count(duplicates=len(block.samples), last_fault=f"block {block.sequence} came twice")
         else:
@@ -90,6 +95,17 @@ class Intake:
         return vibration.late + vibration.disordered
 
     @property
+    def dropped(self) -> int:
+        """Samples of all inputs for which the buffers had no room."""
+        return sum(buffer.dropped for buffer in self._buffers.values())
+
+    @property
     def clock_jumps(self) -> int:
         """Jumps of the stamps."""
         return sum(buffer.jumps for buffer in self._buffers.values())
+
+
+def _overlap(last: Block, block: Block) -> bool:
+    """Whether a block covers the time of the last one and does not continue it."""
+    duration = max(each.period * each.samples.size for each in (last, block)) * NANOSECONDS
+    return block.sequence != last.sequence + 1 and abs(block.stamp - last.stamp) < _OVERLAP * duration

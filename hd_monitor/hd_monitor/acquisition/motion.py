@@ -87,10 +87,10 @@ class Track:
             self._rows = np.concatenate([self._rows, rows])
         return good
 
-    def forget(self, time: float) -> None:
-        """Drop what interpolation from `time` [s] on does not need, and the rows from then on: they come again."""
+    def forget(self, time: float, reach: float = 0.0) -> None:
+        """Drop what interpolation from `reach` before `time` [s] does not need, and rows from `time` on: they recur."""
         last = int(self._times.searchsorted(time))
-        first = max(0, last - 2)
+        first = max(0, (int(self._times.searchsorted(time - reach)) if reach else last) - 2)
         self._times, self._rows = self._times[first:last], self._rows[first:last]
 
 

@@ -36,6 +36,7 @@ class Quality:
     torque_messages: int = _count("torque samples", "samples of a torque sensor accepted")
     torque_faults: int = _count("bad torque samples", "dropped: not finite, out of order or repeated")
     rejected: int = _count("rejected messages", "messages with a wrong layout")
+    dropped: int = _count("dropped", "dropped: mixed from several publishers, placed by no clock, or beyond a buffer")
     rate: float = 0.0
     last_fault: str = ""
 

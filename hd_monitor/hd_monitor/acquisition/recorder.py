@@ -10,7 +10,8 @@ import numpy as np
 from ..arrays import BoolArray, FloatArray, IntArray, runs_of
 from ..settings import JointSettings
 from ..sources import Quantity
-from .clock import recover_clock
+from .bursts import interleaved
+from .clock import Clock, recover_clock
 from .motion import MotionTrack, TorqueTrack, Track, even_stamps
 from .quality import Quality
 from .record import JointSamples, Record
@@ -27,6 +28,8 @@ _FAULTS = {
     "spikes": "are spikes",
 }
 _SHORTEST_RECORD = 8  # samples
+_SPARSEST = 16  # places on the grid for each sample that came
+_FASTEST, _COVERED = 2.0, 0.5  # a rate of more than twice that expected must cover half of a period
 _STANDING = 1e-3  # rad of output travel in a period, below which a constant signal does not mean a stuck sensor
 
 
@@ -69,6 +72,9 @@ class Recorder:
 
     def __init__(self, settings: JointSettings) -> None:
         self._max_gap = settings.analysis.max_gap
+        single = settings.input.source != "block"  # then the rate of the messages is that of the samples
+        self._shortest_period = 1.0 / (_FASTEST * settings.input.expected_rate) if single else 0.0
+        self._span = settings.analysis.period
         self._full_scale = settings.input.clipping_limit
         self._load = settings.load
         self._has_sensor = Quantity.TORQUE in settings.sources
@@ -82,6 +88,7 @@ class Recorder:
         self._torque_track = TorqueTrack()
         self._grid: _Grid | None = None
         self._joined = False
+        self._reach = 0.0  # s by which samples may have been taken before they were stamped
 
     def count(self, **changes: int | float | str) -> None:
         """Add to counters of the quality; words and the rate replace the old value."""
@@ -89,9 +96,10 @@ class Recorder:
         for name, value in changes.items():
             counts[name] = value if name in _REPLACED else counts.get(name, 0) + value
 
-    def quality(self, *, out_of_order: int, clock_jumps: int) -> Quality:
-        """Return the counters so far, with the two that the buffers keep."""
-        return Quality(**self._counts, out_of_order=out_of_order, clock_jumps=clock_jumps)
+    def quality(self, *, out_of_order: int, clock_jumps: int, dropped: int) -> Quality:
+        """Return the counters so far, with those that the buffers keep."""
+        counts = self._counts | {"dropped": self._counts.get("dropped", 0) + dropped}
+        return Quality(**counts, out_of_order=out_of_order, clock_jumps=clock_jumps)
 
     @property
     def rate(self) -> float:
@@ -111,7 +119,7 @@ class Recorder:
         torques = self._measured_torque(period)
         records, values = self._vibration(period.samples[Quantity.VIBRATION], period.epoch, turning)
         for track in (self._track, self._torque_track):
-            track.forget((period.end - period.epoch) * _NS)
+            track.forget((period.end - period.epoch) * _NS, self._reach)
         some = {
             Quantity.VIBRATION: np.isfinite(values).any(),
             Quantity.MOTION: len(joint_samples) > 0,
@@ -163,6 +171,14 @@ class Recorder:
             fault = "the stamps of the vibration samples do not advance"
             self.count(last_fault=fault, duplicates=samples.stamps.size - 1)
             return (), np.empty(0)
+        if fault := self._misplaced(clock, samples.values[clock.order, 0]):
+            self._grid, self._joined = None, False
+            self.count(dropped=samples.stamps.size, last_fault=fault)
+            return (), np.empty(0)
+        self._reach = 2.0 * clock.burst * clock.period if clock.burst > 1 else 0.0
+        if clock.burst > 1:
+            spread = f"bursts of {clock.burst} vibration samples are spread evenly, at {1.0 / clock.period:.6g} Hz"
+            self.count(last_fault=spread)
         screened = screen(samples.values[clock.order, 0], full_scale=self._full_scale, turning=turning)
         self._count_screened(screened)
         self.count(samples=clock.order.size, duplicates=clock.duplicates, rate=1.0 / clock.period)
@@ -170,6 +186,8 @@ class Recorder:
         missing = 0
         if grid is not None:
             missing = round((clock.start - grid.due) / clock.period)
+            if abs(missing) < 0.5 * clock.burst:  # within what the read-outs show of the clock
+                missing = 0
             if missing:
                 self.count(gaps=1, lost=max(missing, 1))
             if missing * clock.period > self._max_gap or missing < 0:
@@ -196,6 +214,21 @@ class Recorder:
                 values[number[first:last] - offset] = screened.values[first:last]
             records.extend(self._records(start + clock.period * offset, clock.period, values))
         return tuple(records), screened.values
+
+    def _misplaced(self, clock: Clock, values: FloatArray) -> str:
+        """Say why the stamps do not show when samples were taken; empty if they do."""
+        if interleaved(values, clock.number, clock.burst):
+            return f"vibration samples of {clock.burst} publishers alternate: stop all publishers but one"
+        steps = clock.number[1:] - clock.number[:-1]
+        places = int(steps[(steps - 1) * clock.period <= self._max_gap].sum())
+        dense = clock.period < self._shortest_period and values.size * clock.period < _COVERED * self._span
+        if dense or places > _SPARSEST * values.size:
+            return (
+                f"the stamps of the vibration samples are {1e6 * clock.period:.3g} µs apart, but not all the time: "
+                "several publishers share the topic, samples are stamped as they are read out, or "
+                "input.expected_rate is too low"
+            )
+        return ""
 
     def _records(self, start: float, period: float, values: FloatArray) -> list[Record]:
         """Cut a contiguous stretch where the motion is unknown."""

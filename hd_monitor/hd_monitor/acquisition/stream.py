@@ -25,6 +25,14 @@ LEAP = 10_000_000_000
 TRUSTED = 1_000_000_000
 """Stamps elsewhere are accepted once they have continued for this long [ns]; until then they may be outliers."""
 
+MOST_AT_ONCE = 5000
+MOST_A_SECOND = 200_000
+"""Samples that a buffer holds whatever their stamps, and further ones for each second that they span: twice as many as
+the fastest sensor sends. Stamps that stand still must not fill the memory."""
+
+MOST_EPOCHS = 8
+"""Jumps of the clock, less one, that may wait for the other inputs to follow."""
+
 
 class Samples(NamedTuple):
     """Stamps [ns], shape (N,), and values, shape (N, columns), in the order of arrival."""
@@ -64,6 +72,7 @@ class _Epoch:
     chunks: list[_Chunk] = field(default_factory=list)
     newest: int | None = None
     oldest: int | None = None
+    size: int = 0
 
 
 class StampedBuffer:
@@ -76,17 +85,20 @@ class StampedBuffer:
 
     Attributes
     ----------
-    late, disordered, jumps : int
-        Samples dropped because they came too late, samples that came late but in time, and jumps of the clock.
+    late, disordered, jumps, dropped : int
+        Samples dropped because they came too late, samples that came late but in time, jumps of the clock, and samples
+        dropped because the buffer was full.
     """
 
     def __init__(self, columns: int) -> None:
         self._columns = columns
         self._epochs: deque[_Epoch] = deque([_Epoch()])
         self._suspects: list[Samples] = []
+        self._suspected = 0  # samples in these
         self.late = 0
         self.disordered = 0
         self.jumps = 0
+        self.dropped = 0
 
     def add(self, stamps: IntArray, values: FloatArray) -> None:
         """Append samples: stamps [ns] of shape (N,), values of shape (N, columns)."""
@@ -108,22 +120,32 @@ class StampedBuffer:
         if epoch.newest is None or -CLOCK_JUMP <= first - epoch.newest <= LEAP:
             if self._suspects:  # the clock is back where it was: the leap was an outlier
                 self.jumps += 1
-                self.late += sum(suspect.stamps.size for suspect in self._suspects)
-                self._suspects.clear()
+                self._drop_suspects()
             self._append_in_time(epoch, piece)
             return
         last = int(self._suspects[-1].stamps[-1]) if self._suspects else first
         if not -CLOCK_JUMP <= first - last <= LEAP:
-            self.late += sum(suspect.stamps.size for suspect in self._suspects)
-            self._suspects.clear()
-        self._suspects.append(piece)
-        if int(piece.stamps[-1]) - int(self._suspects[0].stamps[0]) >= TRUSTED:
-            suspects, self._suspects = self._suspects, []
+            self._drop_suspects()
+        since = int(self._suspects[0].stamps[0]) if self._suspects else first
+        span = int(piece.stamps[-1]) - since
+        if not (room := self._room(self._suspected, span, piece.stamps.size)):
+            return
+        self._suspects.append(Samples(piece.stamps[:room], piece.values[:room]))
+        self._suspected += room
+        if span >= TRUSTED:
+            suspects, self._suspects, self._suspected = self._suspects, [], 0
             if first < epoch.newest:
                 self.jumps += 1
                 self._epochs.append(_Epoch())
+                if len(self._epochs) > MOST_EPOCHS:
+                    self.dropped += self._epochs[1].size
+                    del self._epochs[1]
             for suspect in suspects:
                 self._append_in_time(self._epochs[-1], suspect)
+
+    def _drop_suspects(self) -> None:
+        self.late += self._suspected
+        self._suspects, self._suspected = [], 0
 
     def _append_in_time(self, epoch: _Epoch, piece: Samples) -> None:
         stamps, values = piece
@@ -136,13 +158,23 @@ class StampedBuffer:
         if keep.any():
             self._append(epoch, _Chunk(stamps[keep], values[keep], ordered=False))
 
-    @staticmethod
-    def _append(epoch: _Epoch, chunk: _Chunk) -> None:
-        stamps = chunk.stamps
-        epoch.chunks.append(chunk)
-        low, high = (int(stamps[0]), int(stamps[-1])) if chunk.ordered else (int(stamps.min()), int(stamps.max()))
+    def _append(self, epoch: _Epoch, chunk: _Chunk) -> None:
+        stamps, values, ordered = chunk
+        low, high = (int(stamps[0]), int(stamps[-1])) if ordered else (int(stamps.min()), int(stamps.max()))
+        room = self._room(epoch.size, high - (low if epoch.oldest is None else min(low, epoch.oldest)), stamps.size)
+        if room:
+            whole = room == stamps.size
+            epoch.chunks.append(chunk if whole else _Chunk(stamps[:room].copy(), values[:room].copy(), ordered))
+        epoch.size += room
         epoch.newest = high if epoch.newest is None else max(high, epoch.newest)
         epoch.oldest = low if epoch.oldest is None else min(low, epoch.oldest)
+
+    def _room(self, held: int, span: int, wanted: int) -> int:
+        """Return how many of `wanted` samples fit to those held, which span a time [ns] together; count the others."""
+        most = MOST_AT_ONCE + max(span, 0) * MOST_A_SECOND // 1_000_000_000
+        room = max(0, min(wanted, most - held))
+        self.dropped += wanted - room
+        return room
 
     @property
     def complete_until(self) -> int | None:
@@ -190,6 +222,7 @@ class StampedBuffer:
             if late is not None:
                 left.append(late)
         epoch.chunks = left
+        epoch.size = sum(chunk.stamps.size for chunk in left)
         epoch.oldest = min((_oldest(chunk) for chunk in left), default=None)
         if not taken:
             return Samples(np.empty(0, dtype=np.int64), np.empty((0, self._columns)))

@@ -41,7 +41,12 @@ class InputSettings:
         "depth of the subscription queues, in seconds of the expected rate; Fast DDS keeps 5000 messages",
     )
     expected_rate: float = number(
-        1000.0, "Hz", 1.0, 100_000.0, "expected rate of the messages of the fastest input, for the depth of the queues"
+        1000.0,
+        "Hz",
+        1.0,
+        100_000.0,
+        "expected rate of the messages of the fastest input, for the depth of the queues; single samples stamped more "
+        "than twice as densely are used only where they fill half of a period",
     )
     reliability: str = choice(
         "reliable",

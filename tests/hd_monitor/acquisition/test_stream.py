@@ -1,10 +1,11 @@
 """Buffers hand out everything once, up to a time, and decide lateness and clock jumps by their own stamps."""
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hd_monitor.acquisition.stream import CLOCK_JUMP, LATENESS, StampedBuffer
+from hd_monitor.acquisition.stream import CLOCK_JUMP, LATENESS, MOST_AT_ONCE, MOST_EPOCHS, StampedBuffer
 
 MS = 1_000_000
 
@@ -81,3 +82,36 @@ def test_the_earliest_sample_can_be_seen_without_taking_it() -> None:
     assert buffer.peek_first().stamps.tolist() == [20 * MS]
     assert buffer.take(2**62).stamps.size == 3
     assert buffer.peek_first().stamps.size == 0
+
+
+def held(buffer: StampedBuffer) -> int:
+    """Samples handed out by a buffer that is emptied, jumps of the clock included."""
+    count = buffer.take(2**62).stamps.size
+    while buffer.jumped:
+        buffer.pass_jump()
+        count += buffer.take(2**62).stamps.size
+    return count
+
+
+@pytest.mark.parametrize("leap", [0, -5, 3600])
+def test_stamps_that_stand_still_do_not_fill_the_memory(leap: int) -> None:
+    stamps = [4000 * CLOCK_JUMP, 4000 * CLOCK_JUMP + MS] + [(4000 + leap) * CLOCK_JUMP + MS] * 3 * MOST_AT_ONCE
+    buffer = buffer_of(stamps, 50)
+    dropped, kept = buffer.dropped, held(buffer)
+    assert dropped + kept + buffer._suspected == len(stamps)
+    assert kept < 1.1 * MOST_AT_ONCE
+
+
+def test_stamps_that_go_on_after_standing_still_are_taken() -> None:
+    stamps = [CLOCK_JUMP] * 3 * MOST_AT_ONCE + [CLOCK_JUMP + MS * i for i in range(1, 200)]
+    buffer = buffer_of(stamps, 50)
+    assert buffer.take(2**62).stamps[-1] == stamps[-1]
+
+
+def test_a_clock_that_keeps_jumping_back_fills_a_few_epochs_only() -> None:
+    run = [20 * MS * i for i in range(60)]
+    stamps = [(1000 - 10 * jump) * CLOCK_JUMP + stamp for jump in range(40) for stamp in run]
+    buffer = buffer_of(stamps, 20)
+    assert buffer.jumps == 39
+    assert buffer.dropped == (40 - MOST_EPOCHS) * len(run)
+    assert held(buffer) == MOST_EPOCHS * len(run)
