@@ -7,6 +7,7 @@ from pathlib import Path
 
 from ..diagnosis.verdict import Level
 from ..errors import ParameterError
+from ..offline.compression import CHUNK_LIMIT
 from ..offline.output import check_file, check_folder, write_file
 from ..offline.parameters import load_parameters, parse_override
 from ..offline.plan import Request
@@ -40,6 +41,13 @@ def add_input_arguments(parser: argparse.ArgumentParser, result: str = "result")
         "--remap", action="append", default=[], metavar="FROM:=TO", help="topic of the contract := recorded topic"
     )
     parser.add_argument("--namespace", metavar="NS", help="namespace of the node, where several were recorded")
+    parser.add_argument(
+        "--chunk-limit",
+        type=_mebibytes,
+        default=CHUNK_LIMIT,
+        metavar="MIB",
+        help=f"size [MiB] to which a compressed chunk or message may expand; default: {CHUNK_LIMIT >> 20}",
+    )
     parser.add_argument("--json", metavar="OUT", help=f"write the {result} as JSON to this file; - for standard output")
 
 
@@ -61,7 +69,20 @@ def request_from(arguments: argparse.Namespace) -> Request:
                 f"--remap {text!r} maps nothing; write FROM:=TO, as in joint_states:=/arm/joint_states"
             )
         remap[name] = target
-    return Request(parameters=parameters, joints=arguments.joint, namespace=arguments.namespace, remap=remap)
+    return Request(
+        parameters=parameters,
+        joints=arguments.joint,
+        namespace=arguments.namespace,
+        remap=remap,
+        chunk_limit=arguments.chunk_limit,
+    )
+
+
+def _mebibytes(text: str) -> int:
+    """Read a whole number of MiB; return the bytes."""
+    if not text.isdecimal() or not int(text):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number of MiB above 0")
+    return int(text) << 20
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -6,21 +6,29 @@ from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
 from contextlib import ExitStack
 from pathlib import Path, PurePath
-from typing import Self
+from typing import NamedTuple, Self
 
 import numpy as np
 import yaml
 from numpy.typing import NDArray
 
 from .batches import Batch, RawMessage, RawTopic, Window, in_batches
-from .compression import MAGIC, decompress, decompress_file
+from .compression import CHUNK_LIMIT, decompress_file
 from .errors import BagError, one_line
 from .salvage import McapWalk, SqliteWalk, Walk, restore_length
-from .sqlite import WholeSqlite, has_unsaved_rows
+from .sqlite import WholeSqlite, has_unsaved_rows, holds_views
 from .whole_mcap import WholeMcap
 
 STORAGE_SUFFIXES = (".mcap", ".db3")
 COMPRESSED_SUFFIXES = (".zstd", ".zst")
+
+
+class _Part(NamedTuple):
+    """A file as the user knows it, the same decompressed, and what reads it."""
+
+    given: Path
+    plain: Path
+    reader: WholeMcap | WholeSqlite | Walk
 
 
 class Bag:
@@ -30,6 +38,8 @@ class Bag:
     ----------
     path : path-like
         A rosbag2 folder, or a single ``.mcap`` or ``.db3`` file, also Zstandard-compressed.
+    chunk_limit : int
+        Bytes to which a compressed chunk or message may expand; what expands further is left out, with a note.
 
     Attributes
     ----------
@@ -46,12 +56,13 @@ class Bag:
         If nothing can be read from it.
     """
 
-    def __init__(self, path: str | Path) -> None:
+    def __init__(self, path: str | Path, chunk_limit: int = CHUNK_LIMIT) -> None:
         self.path = Path(path)
+        self._limit = chunk_limit
         self.notes: list[str] = []
         self.span: tuple[int, int] | None = None
         self._stack = ExitStack()
-        self._parts: list[tuple[Path, WholeMcap | WholeSqlite | Walk]] = []
+        self._parts: list[_Part] = []
         try:
             self.topics = self._open()
         except BaseException:
@@ -86,19 +97,24 @@ class Bag:
             yield from batch.windows(names, pause)
 
     def _batches(self, names: Sequence[str]) -> Iterator[Batch]:
-        for path, reader in self._parts:
+        for given, plain, reader in self._parts:
+
+            def lost(place: int, cause: str, file: str = given.name) -> None:
+                self._note(f"{file}: messages of {names[place]} were left out ({cause})")
+
             delivered = np.zeros(len(names), dtype=np.intp)
             if not isinstance(reader, Walk):
                 try:
                     for batch in reader.batches(names):
-                        yield batch
+                        yield from batch.unpacked(self._limit, lost)
                         delivered += np.bincount(batch.topics, minlength=len(names))
                     continue
                 except Exception as error:  # a parser of damaged files raises anything
-                    cause = f"{path.name} is damaged ({one_line(error)})"
+                    cause = f"{given.name} is damaged ({one_line(error)})"
                     self._note(f"{cause}; what is still whole is read piece by piece")
-                    reader = self._walk(path)
-            yield from in_batches(_salvaged(reader, names, delivered))
+                    reader = self._walk(given, plain)
+            for batch in in_batches(_salvaged(reader, names, delivered)):
+                yield from batch.unpacked(self._limit, lost)
 
     def _open(self) -> tuple[RawTopic, ...]:
         if not self.path.exists():
@@ -122,7 +138,7 @@ class Bag:
                 self._note(str(error))
         if not self._parts:
             raise BagError(f"{self.path}: none of its {len(files)} files can be read; give another recording")
-        readers = [reader for _, reader in self._parts]
+        readers = [part.reader for part in self._parts]
         spans = [reader.span for reader in readers if not isinstance(reader, Walk) and reader.span]
         if spans and not any(isinstance(reader, Walk) for reader in readers):
             self.span = min(spans)[0], max(end for _, end in spans)
@@ -141,48 +157,56 @@ class Bag:
         found = sorted((file for file in self.path.iterdir() if _is_storage(file)), key=_natural_order)
         if not found:
             return []
+        by_name = {file.name: file for file in found}
         try:
             metadata = yaml.safe_load((self.path / "metadata.yaml").read_text(encoding="utf-8"))
             names = [PurePath(path).name for path in metadata["rosbag2_bagfile_information"]["relative_file_paths"]]
         except Exception as error:  # damaged YAML is anything
-            self._note(f"{self.path.name} is not whole (its metadata.yaml cannot be read: {one_line(error)})")
+            self._note(f"{self.path.name}: metadata.yaml cannot be read ({one_line(error)}); all its files are taken")
             return found
-        if missing := [name for name in names if not (self.path / name).exists()]:
-            self._note(f"{self.path.name} is not whole ({', '.join(missing)} missing); only what is there is read")
-        return [self.path / name for name in names if name not in missing] or found
+        if missing := [name for name in names if name not in by_name]:
+            listed = one_line(", ".join(missing))
+            self._note(f"{self.path.name} is not whole ({listed} missing); only what is there is read")
+        return [by_name[name] for name in dict.fromkeys(names) if name in by_name] or found
 
-    def _part(self, file: Path) -> tuple[Path, WholeMcap | WholeSqlite | Walk]:
+    def _part(self, file: Path) -> _Part:
         """Return a file, decompressed, and what reads it: in bulk if it is whole."""
         plain = self._plain(file)
         if has_unsaved_rows(plain):
-            self._note(f"{plain.name} was not closed: what its write-ahead log holds is read too")
+            self._note(f"{file.name} was not closed: what its write-ahead log holds is read too")
         try:
             if plain.suffix != ".mcap":
-                return plain, WholeSqlite(plain)
-            whole = WholeMcap(plain)
+                if holds_views(plain):
+                    raise BagError(f"{file} computes its messages instead of storing them; give a recorded bag")
+                return _Part(file, plain, WholeSqlite(plain))
+            whole = WholeMcap(plain, self._limit, lambda sentence: self._note(f"{file.name}: {sentence}"))
             if whole.indexed:
-                return plain, whole
+                return _Part(file, plain, whole)
+        except BagError:
+            raise
         except Exception as error:  # a parser of damaged files raises anything
             self._note(f"{file.name} is not whole ({one_line(error)}); only what is still whole is read")
-        return plain, self._walk(plain)
+        return _Part(file, plain, self._walk(file, plain))
 
-    def _walk(self, plain: Path) -> Walk:
+    def _walk(self, file: Path, plain: Path) -> Walk:
         if plain.suffix != ".mcap":
             whole = self._folder() / plain.name
             if restore_length(plain, whole):
-                self._note(f"{plain.name} is cut off: the recording was not closed")
+                self._note(f"{file.name} is cut off: the recording was not closed")
                 plain = whole
-            return SqliteWalk(plain, self._note)
-        return McapWalk(plain, self._note)
+            return SqliteWalk(plain, file, self._limit, self._note)
+        return McapWalk(plain, file, self._limit, self._note)
 
     def _plain(self, file: Path) -> Path:
         """Return `file`, or a decompressed copy of it that lives as long as the bag is open."""
         if file.suffix not in COMPRESSED_SUFFIXES:
             return file
-        plain = self._folder() / file.stem
-        plain.touch()
         try:
-            decompress_file(file, plain)
+            plain = self._folder() / file.stem
+            decompress_file(file, plain, self._limit)
+        except OSError as error:
+            where = f"{file} cannot be decompressed into {tempfile.gettempdir()} ({error.strerror})"
+            raise BagError(f"{where}; make room there, or set TMPDIR to another folder") from None
         except Exception as error:  # the class is the decompressor's own
             self._note(f"{file.name} is damaged ({one_line(error)}): only what precedes the damage is read")
         return plain
@@ -203,11 +227,6 @@ def _salvaged(walk: Walk, names: Sequence[str], delivered: NDArray[np.intp]) -> 
         place = places.get(name)
         if place is None:
             continue
-        if data.startswith(MAGIC):
-            try:
-                data = decompress("zstd", data, whole=False)
-            except Exception:  # a damaged message is missing: the gap is counted further on
-                continue
         if delivered[place]:
             delivered[place] -= 1
             continue

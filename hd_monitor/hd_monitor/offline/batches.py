@@ -1,11 +1,14 @@
 """Messages handed on by the thousand, as columns: what costs little for one message costs much for a million."""
 
 import itertools
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
+
+from .compression import MAGIC, decompress
+from .errors import one_line
 
 ROWS = 4096
 """Messages taken at once from a source that gives them one by one."""
@@ -52,16 +55,39 @@ class Batch(NamedTuple):
         kind = np.int64 if max(times) < 2**63 else np.uint64  # MCAP counts to 2**64, and damage makes use of it
         return cls(np.array(times, kind), np.array(topics), np.array(data, dtype=np.object_))
 
-    @classmethod
-    def joined(cls, batches: Iterable[Self]) -> Self:
-        """Put batches, at least one, together by time; messages of equal times stay in order."""
-        batch = cls(*map(np.concatenate, zip(*batches, strict=True)))
-        ordered = bool((batch.times[1:] >= batch.times[:-1]).all())
-        return batch if ordered else batch.part(np.argsort(batch.times, kind="stable"))
-
     def part(self, which: NDArray[Any] | slice) -> Self:
         """Return some of the messages, or all in another order."""
         return type(self)(self.times[which], self.topics[which], self.data[which])
+
+    def unpacked(self, limit: int, lost: Callable[[int, str], None]) -> Iterator[Self]:
+        """Yield the messages with those decompressed that are compressed, which their first bytes tell.
+
+        Parameters
+        ----------
+        limit : int
+            Bytes to which a message may expand; several batches are yielded where they do so together.
+        lost : callable
+            Told of each message that cannot be decompressed the place of its topic, and why.
+        """
+        if not (self.data >= MAGIC).any():  # no CDR message is: it begins with 0
+            yield self
+            return
+        data, size = self.data.copy(), 0
+        rows: list[int] = []
+        for row, packed in enumerate(self.data):
+            if packed.startswith(MAGIC):
+                try:
+                    data[row] = decompress("zstd", packed, limit)
+                except Exception as error:  # the class is the decompressor's own
+                    lost(int(self.topics[row]), one_line(error))
+                    continue
+            size += len(data[row])
+            if size > limit and rows:
+                yield type(self)(self.times[rows], self.topics[rows], data[rows])
+                data[rows], rows, size = None, [], len(data[row])
+            rows.append(row)
+        if rows:
+            yield type(self)(self.times[rows], self.topics[rows], data[rows])
 
     def windows(self, names: Sequence[str], pause: int) -> Iterator[Window]:
         """Yield the messages by the names of their topics; a `pause` [ns], unless 0, begins a new window."""

@@ -7,6 +7,7 @@ class BagError(HdMonitorError):
     """A recording of which nothing can be said; the message is one line and says what to do."""
 
 
-def one_line(error: BaseException) -> str:
-    """Return an error's message on one line; its class's name if it has none."""
-    return " ".join(str(error).split()).rstrip(".") or type(error).__name__
+def one_line(error: BaseException | str) -> str:
+    """Return an error's message on one line, without the path that the system's own name; its class's name if empty."""
+    text = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+    return " ".join(text.split()).rstrip(".") or type(error).__name__

@@ -99,7 +99,7 @@ def identify(
     joints: dict[str, JointIdentification] = {}
     for path in paths:
         try:
-            with Bag(path) as bag:
+            with Bag(path, request.chunk_limit) as bag:
                 plans = plan(bag, request)
                 _pair_up(joints, plans, path)
                 _go_through(bag, plans, joints)

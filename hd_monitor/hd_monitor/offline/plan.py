@@ -11,6 +11,7 @@ from ..errors import ParameterError
 from ..settings import JointSettings, split_joints
 from ..sources import INPUT_SOURCES, JOINT_STATES, Quantity
 from .bag import Bag
+from .compression import CHUNK_LIMIT
 from .errors import BagError
 from .topics import TopicFinder
 
@@ -45,6 +46,8 @@ class Request:
     """Namespace of the node, if several have been recorded."""
     remap: Mapping[str, str] = field(default_factory=dict)
     """From the contract's relative names to the recording's."""
+    chunk_limit: int = CHUNK_LIMIT
+    """Bytes to which a compressed chunk or message of a recording may expand."""
 
 
 def plan(bag: Bag, request: Request) -> list[JointPlan]:

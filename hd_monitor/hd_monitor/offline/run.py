@@ -62,7 +62,7 @@ def replay_bag(path: Path, request: Request, *, for_report: bool = False) -> Out
     ParameterError
         If the parameters are wrong.
     """
-    with Bag(path) as bag:
+    with Bag(path, request.chunk_limit) as bag:
         plans = plan(bag, request)
         collectors = _collectors(plans) if for_report else {}
         joints = run(bag, plans, {joint: collector.add for joint, collector in collectors.items()})

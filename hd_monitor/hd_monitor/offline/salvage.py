@@ -10,8 +10,6 @@ import struct
 from abc import ABC, abstractmethod
 from collections import Counter
 from collections.abc import Callable, Iterator
-from contextlib import closing
-from operator import itemgetter
 from pathlib import Path
 from typing import BinaryIO
 
@@ -19,9 +17,18 @@ from mcap.opcode import Opcode
 
 from . import mcap_records, sqlite
 from .batches import RawMessage, RawTopic
-from .compression import decompress
+from .compression import expand
 from .errors import BagError, one_line
-from .mcap_records import DamageError, Records, bare_message, heads, parse_chunk, string_at
+from .mcap_records import (
+    DamageError,
+    Records,
+    bare_message,
+    heads,
+    parse_chunk,
+    permitted_size,
+    string_at,
+    type_name,
+)
 
 Note = Callable[[str], None]
 _Row = tuple[tuple[str, str], int, bytes]
@@ -34,6 +41,10 @@ class Walk(ABC):
     Parameters
     ----------
     path : Path
+    given : Path
+        The file as the user knows it, of which `path` may be a decompressed or restored copy.
+    limit : int
+        Bytes to which a chunk may expand.
     note : callable
         Takes a sentence about each place that cannot be read.
 
@@ -46,15 +57,14 @@ class Walk(ABC):
     MAGIC: bytes
     KIND: str
 
-    def __init__(self, path: Path, note: Note) -> None:
+    def __init__(self, path: Path, given: Path, limit: int, note: Note) -> None:
         self._topics: dict[int, tuple[str, str]] = {}
-        self._path = path
-        self._note = note
+        self._path, self._name, self._limit, self._note = path, given.name, limit, note
         with path.open("rb") as file:
             begun = file.read(len(self.MAGIC))
         if begun != self.MAGIC:
             what = f"does not begin as {self.KIND} does" if begun else "is empty"
-            raise BagError(f"{path} {what}: nothing can be read from it; give another recording")
+            raise BagError(f"{given} {what}: nothing can be read from it; give another recording")
 
     def topics(self) -> list[RawTopic]:
         """Find the topics and count their messages, in one walk through the file."""
@@ -76,8 +86,8 @@ class McapWalk(Walk):
     MAGIC = mcap_records.MAGIC
     KIND = "an MCAP file"
 
-    def __init__(self, path: Path, note: Note) -> None:
-        super().__init__(path, note)
+    def __init__(self, path: Path, given: Path, limit: int, note: Note) -> None:
+        super().__init__(path, given, limit, note)
         self._types: dict[int, str] = {}
 
     def _rows(self, note: Note) -> Iterator[_Row]:
@@ -97,7 +107,7 @@ class McapWalk(Walk):
     def _records(self, file: BinaryIO, note: Note) -> Iterator[tuple[int, bytes]]:
         """Yield kind and body of each record that matters, up to the end or the first damage."""
         try:
-            for head in heads(file, self._path.name):
+            for head in heads(file, self._name):
                 known = head.code in (Opcode.SCHEMA, Opcode.CHANNEL, Opcode.MESSAGE)
                 if head.code == Opcode.CHUNK or (known and head.whole):
                     file.seek(head.begin)
@@ -109,26 +119,31 @@ class McapWalk(Walk):
         """Keep what a record says of types or topics."""
         if code == Opcode.SCHEMA and len(body) >= 6:
             (number,) = struct.unpack_from("<H", body)
-            self._types[number] = string_at(body, 2)
+            self._types[number], _ = string_at(body, 2)
         elif code == Opcode.CHANNEL and len(body) >= 8:
             number, schema = struct.unpack_from("<HH", body)
-            self._topics[number] = string_at(body, 4), self._types.get(schema, "")
+            topic, end = string_at(body, 4)
+            encoding, _ = string_at(body, end)
+            self._topics[number] = topic, type_name(self._types.get(schema, ""), encoding)
 
     def _chunk(self, body: bytes, note: Note) -> Iterator[tuple[int, int, bytes]]:
         try:
             chunk = parse_chunk(body)
-            content = decompress(chunk.compression, chunk.data, whole=False)
+            size = permitted_size(chunk, self._limit)
+            content, _ = expand(chunk.compression, chunk.data, size + 1)
         except Exception as error:  # the decompressors raise whatever their authors chose
-            note(f"{self._path.name}: a damaged chunk was left out ({one_line(error)})")
-            return iter(())
-        if len(content) < chunk.uncompressed_size:
-            note(f"{self._path.name}: {chunk.uncompressed_size - len(content)} bytes of a chunk are missing")
+            note(f"{self._name}: a chunk was left out ({one_line(error)})")
+            return
+        if len(content) < size:
+            note(f"{self._name}: {size - len(content)} bytes of a chunk are missing")
+        elif len(content) > size:
+            note(f"{self._name}: a chunk holds more than the {size} bytes announced, and only those are read")
+            content = content[:size]
         records = Records.parse(content)
-        for code, part in records.others:
+        for code, part in records.others():
             self._learn(code, part)
-        found = records.messages
-        rows = zip(found.channels.tolist(), found.times.tolist(), found.data(), strict=True)
-        return iter(sorted(rows, key=itemgetter(1)))
+        for some in records.messages.in_order().stretches():
+            yield from zip(some.channels.tolist(), some.times.tolist(), some.data(), strict=True)
 
 
 def restore_length(source: Path, target: Path) -> bool:
@@ -157,22 +172,22 @@ class SqliteWalk(Walk):
     MAGIC = sqlite.MAGIC
     KIND = "a SQLite file"
 
-    def __init__(self, path: Path, note: Note) -> None:
-        super().__init__(path, note)
+    def __init__(self, path: Path, given: Path, limit: int, note: Note) -> None:
+        super().__init__(path, given, limit, note)
         try:
-            with closing(sqlite.connect(path)) as database:
+            with sqlite.opened(path) as database:
                 for number, name, kind in database.execute("SELECT id, name, type FROM topics"):
                     self._topics[int(number)] = str(name), str(kind)
         except Exception as error:  # a damaged file also yields invalid text and numbers
-            reason = f"{path} is damaged in its list of topics ({one_line(error)}); give another recording"
+            reason = f"{given} is damaged in its list of topics ({one_line(error)}); give another recording"
             raise BagError(reason) from None
 
     def _rows(self, note: Note) -> Iterator[_Row]:
         try:
-            with closing(sqlite.connect(self._path)) as database:
+            with sqlite.opened(self._path) as database:
                 rows = database.execute("SELECT topic_id, timestamp, data FROM messages NOT INDEXED")
                 for number, time, data in rows:
                     if number in self._topics and isinstance(time, int) and isinstance(data, bytes):
                         yield self._topics[number], time, data
         except Exception as error:  # a damaged file also yields invalid text
-            note(f"{self._path.name} is damaged ({one_line(error)}): what follows cannot be read")
+            note(f"{self._name} is damaged ({one_line(error)}): what follows cannot be read")

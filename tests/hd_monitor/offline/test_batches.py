@@ -8,6 +8,8 @@ from hypothesis import strategies as st
 
 from hd_monitor.offline.batches import ROWS, Batch, Window, in_batches
 
+zstd = pytest.importorskip("backports.zstd")
+
 NAMES = ("/a", "/b", "/c")
 Row = tuple[int, int, bytes]
 
@@ -61,10 +63,26 @@ def test_rows_come_in_batches_of_limited_size(count: int) -> None:
     assert [row for batch in batches for row in zip(*batch, strict=True)] == rows
 
 
-def test_joined_batches_go_by_time_and_equal_times_stay_in_order() -> None:
-    first = Batch.of_rows([(50, 2, b"fifty"), (40, 0, b""), (50, 2, b"more")])
-    second = Batch.of_rows([(45, 1, b"late"), (50, 1, b"last")])
-    assert Batch.joined([first, second]).data.tolist() == [b"", b"late", b"fifty", b"more", b"last"]
+def test_compressed_messages_are_decompressed_and_damaged_ones_reported() -> None:
+    packed = zstd.compress(b"\0\1" * 50)
+    rows = [(1, 0, b"\0\1"), (2, 1, packed), (3, 2, packed[:-3]), (4, 1, b"")]
+    lost: list[tuple[int, str]] = []
+    (batch,) = Batch.of_rows(rows).unpacked(1000, lambda *row: lost.append(row))
+    assert (batch.times.tolist(), batch.topics.tolist()) == ([1, 2, 4], [0, 1, 1])
+    assert batch.data.tolist() == [b"\0\1", b"\0\1" * 50, b""]
+    assert lost == [(2, "its compressed data is cut off")]
+    batch = Batch.of_rows(rows[:1])
+    assert list(batch.unpacked(100, lambda place, cause: pytest.fail(cause))) == [batch]
+
+
+def test_messages_that_expand_beyond_the_limit_together_come_one_batch_after_the_other() -> None:
+    packed = zstd.compress(bytes(1000))
+    lost: list[tuple[int, str]] = []
+    rows = [(time, 0, packed) for time in range(5)] + [(5, 1, zstd.compress(bytes(2001)))]
+    batches = list(Batch.of_rows(rows).unpacked(2000, lambda *row: lost.append(row)))
+    assert [batch.times.tolist() for batch in batches] == [[0, 1], [2, 3], [4]]
+    assert all(data == bytes(1000) for batch in batches for data in batch.data)
+    assert lost == [(1, "it expands to more than 2000 bytes")]
 
 
 def test_columns_give_the_rows_they_were_made_of() -> None:

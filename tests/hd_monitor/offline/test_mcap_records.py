@@ -1,6 +1,7 @@
 """Chunks are taken apart strictly where they should be whole, and as far as they go where they are not."""
 
 import struct
+import tracemalloc
 import zlib
 from dataclasses import replace
 from pathlib import Path
@@ -11,7 +12,7 @@ from mcap.records import Chunk
 from tests.hd_monitor.offline import mcap_files
 from tests.hd_monitor.offline.mcap_files import Sent
 
-from hd_monitor.offline.mcap_records import DamageError, Records, checked_content, heads
+from hd_monitor.offline.mcap_records import DamageError, Messages, Records, checked_content, heads
 
 SENT = [Sent(3, 50, b"fifty"), Sent(1, 40, b""), Sent(3, 50, b"more")]
 CONTENT = b"".join(map(mcap_files.message_record, SENT))
@@ -43,21 +44,56 @@ def test_a_message_too_short_to_be_one_is_left_out() -> None:
     assert not Records.parse(short + CONTENT).whole
 
 
-def test_other_records_are_handed_on() -> None:
-    other = struct.pack("<BQ", 0x0C, 3) + b"abc"
-    assert Records.parse(other + CONTENT + other).others == [(0x0C, b"abc")] * 2
+def test_records_of_channels_and_types_are_handed_on_and_others_passed_over() -> None:
+    channel, unknown = struct.pack("<BQ", Opcode.CHANNEL, 3) + b"abc", struct.pack("<BQ", 0xC0, 3) + b"abc"
+    records = Records.parse(channel + CONTENT + unknown + channel)
+    assert list(records.others()) == [(Opcode.CHANNEL, b"abc")] * 2
+    assert records.whole
+
+
+def test_nothing_is_read_beyond_a_record_of_no_kind() -> None:
+    assert found(CONTENT + bytes(9) + CONTENT) == SENT
+    assert not Records.parse(CONTENT + bytes(9) + CONTENT).whole
+
+
+@pytest.mark.parametrize("record", [bytes(9), struct.pack("<BQ", 0x80, 0), mcap_files.message_record(SENT[1])])
+def test_records_by_the_million_are_no_objects(record: bytes) -> None:
+    content = record * ((32 << 20) // len(record))
+    tracemalloc.start()
+    records = Records.parse(content)
+    assert tracemalloc.get_traced_memory()[1] < 3 * len(content)
+    tracemalloc.stop()
+    assert records.whole is any(record)
+    assert max(len(some.times) for some in [*records.messages.stretches(), records.messages.part(slice(0))]) <= 1 << 16
+
+
+def test_messages_of_several_chunks_go_by_time_and_equal_times_stay_in_order() -> None:
+    first = Records.parse(CONTENT).messages.in_order()
+    second = Records.parse(
+        mcap_files.message_record(Sent(2, 50, b"last")) + mcap_files.message_record(SENT[1])
+    ).messages
+    assert Messages.joined([first, second.in_order()]).data() == [b"", b"", b"fifty", b"more", b"last"]
 
 
 @pytest.mark.parametrize("compression", ["", "lz4", "zstd"])
 def test_a_chunk_of_another_size_or_checksum_than_announced_is_damaged(compression: str) -> None:
     size, checksum, packed = len(CONTENT), zlib.crc32(CONTENT), mcap_files.PACK[compression](CONTENT)
     chunk = Chunk(compression, packed, 50, 40, checksum, size)
-    assert checked_content(chunk) == CONTENT
-    assert checked_content(replace(chunk, uncompressed_crc=0)) == CONTENT
-    with pytest.raises(DamageError, match="bytes instead of"):
-        checked_content(replace(chunk, uncompressed_size=size + 1))
+    assert checked_content(chunk, size) == CONTENT
+    assert checked_content(replace(chunk, uncompressed_crc=0), size) == CONTENT
+    with pytest.raises(DamageError, match="fewer than the"):
+        checked_content(replace(chunk, uncompressed_size=size + 1), 2 * size)
+    with pytest.raises(DamageError, match="more than the"):
+        checked_content(replace(chunk, uncompressed_size=size - 1), 2 * size)
     with pytest.raises(DamageError, match="checksum"):
-        checked_content(replace(chunk, uncompressed_crc=checksum + 1))
+        checked_content(replace(chunk, uncompressed_crc=checksum + 1), size)
+
+
+@pytest.mark.parametrize("compression", ["lz4", "zstd"])
+def test_a_chunk_of_more_than_the_limit_is_not_decompressed(compression: str) -> None:
+    chunk = Chunk(compression, b"not even compressed", 50, 40, 0, 1001)
+    with pytest.raises(DamageError, match="1001 bytes are announced, --chunk-limit permits 1000"):
+        checked_content(chunk, 1000)
 
 
 def test_a_file_cut_anywhere_says_so(tmp_path: Path) -> None:

@@ -15,7 +15,7 @@ from tests.hd_monitor.offline import recordings as rec
 from tests.hd_monitor.offline.mcap_files import Sent
 
 from hd_monitor.offline.bag import Bag
-from hd_monitor.offline.compression import MAGIC
+from hd_monitor.offline.compression import CHUNK_LIMIT, MAGIC
 from hd_monitor.offline.whole_mcap import WholeMcap
 
 TOPICS = ("/a", "/b", "/c")
@@ -163,7 +163,7 @@ def test_a_late_chunk_is_read_before_what_it_precedes(tmp_path: Path) -> None:
 def test_only_chunks_that_overlap_are_held_together(tmp_path: Path) -> None:
     chunks = [some(1000 * number, 50, 1 + number % 3) for number in range(20)]
     path = mcap_files.write(tmp_path / "a.mcap", chunks, TOPICS)
-    assert [len(batch.data) for batch in WholeMcap(path).batches(TOPICS)] == [50] * 20
+    assert [len(batch.data) for batch in WholeMcap(path, CHUNK_LIMIT, pytest.fail).batches(TOPICS)] == [50] * 20
 
 
 @pytest.mark.usefixtures("bulk_only")
