@@ -25,8 +25,8 @@ def page() -> str:
 
 By default `hd_sim_node` and `hd-sim-bag` simulate the drive of Gu et al. (2021): a linear oscillator whose stiffness
 both splines make fluctuate. The parameters `*.transmission_error`, `elasticity.*`, `hysteresis.*`, `friction.*`,
-`torque.*`, `inertia.*`, `drift.*` and `growth.*` ([parameters](parameters.md)) add what a real drive does besides, and
-`sensor.*` and `joint_states.*` what is measured of it, each neutral by default.
+`torque.*`, `inertia.*`, `drift.*` and `growth.*` ([parameters](parameters.md)) add what a real drive does besides, each
+neutral by default; `sensor.*` and `joint_states.*` say how it is measured.
 
 {EQUATION}
 ## What each effect does to the zoom spectrum
