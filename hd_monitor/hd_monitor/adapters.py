@@ -12,6 +12,7 @@ import numpy as np
 from . import cdr, contract
 from .arrays import FloatArray, IntArray
 from .cdr_layout import Fault
+from .errors import listed
 from .settings import JointSettings
 from .sources import Quantity, Stamped
 
@@ -96,7 +97,7 @@ class Inputs:
         return 0 if self._takes_any and len(names) == 1 else None
 
     def _absent(self, names: tuple[str, ...]) -> str:
-        there = ", ".join(names) if names else "no joint at all"
+        there = listed(names) if names else "no joint at all"
         if self._takes_any:
             return f"joint_states carries {there}; set input.joint_name (or joints) to the one to watch"
         return f"joint {self._joint!r} is not in joint_states, which carries {there}; check the name"

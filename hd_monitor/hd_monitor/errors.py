@@ -1,10 +1,30 @@
 """Errors that hd_monitor raises on purpose: each message states the value, the consequence and what to do."""
 
+import reprlib
+from collections.abc import Sequence
+
 UNUSABLE_INPUT = 2
 """Exit status for unusable input or parameters, or a package that is not installed."""
 
 FAILED = 3
 """Exit status for output that cannot be written and for an error of our own."""
+
+_LISTED, _LONGEST = 6, 80
+
+
+def listed(names: Sequence[str]) -> str:
+    r"""List names that come from outside in a sentence: the first few, abridged and in quotes if they would break it.
+
+    Examples
+    --------
+    >>> print(listed(["elbow", "left\narm", "", "x" * 100]))
+    elbow, 'left\narm', '', 'xxxxxxxxxxxx...xxxxxxxxxxxxx'
+    >>> print(listed("abcdefgh"))
+    a, b, c, d, e, f and 2 more
+    """
+    few = names[:_LISTED]
+    shown = [name if name.isprintable() and 0 < len(name) < _LONGEST else reprlib.repr(name) for name in few]
+    return ", ".join(shown) + (f" and {len(names) - _LISTED} more" if len(names) > _LISTED else "")
 
 
 class HdMonitorError(ValueError):

@@ -167,3 +167,17 @@ def test_a_wrenchs_torque_is_taken_along_the_joints_axis(axis: str, expected: fl
     assert sink.torque == [(1, expected), (2, expected)]
     assert len(sink.rejected) == 1
     assert "cut off" in sink.rejected[0]
+
+
+@pytest.mark.parametrize(
+    ("names", "shown"),
+    [
+        (["left\narm", "\x1b[31mred", ""], "'left\\narm', '\\x1b[31mred', ''; check the name"),
+        ([f"j{number}" for number in range(1000)], "j0, j1, j2, j3, j4, j5 and 994 more; check the name"),
+    ],
+)
+def test_a_complaint_about_names_stays_one_short_line(names: list[str], shown: str) -> None:
+    sink = Recorder()
+    message = joint_state(0, **dict.fromkeys(names, 0.0))
+    Inputs("elbow", JointSettings.from_mapping(), sink).add(Quantity.MOTION, [message])
+    assert sink.rejected == [f"joint 'elbow' is not in joint_states, which carries {shown}"]

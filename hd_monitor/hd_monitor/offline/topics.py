@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 
 from ..contract import BLOCK_LABEL
+from ..errors import listed
 from ..sources import Quantity, Source
 from .batches import RawTopic
 from .errors import BagError
@@ -86,7 +87,7 @@ class TopicFinder:
             return named[0]
         if named:
             raise BagError(
-                f"{', '.join(named)} could all be {name}; choose one with --namespace or --remap {name}:={named[0]}"
+                f"{listed(named)} could all be {name}; choose one with --namespace or --remap {name}:={named[0]}"
             )
         raise BagError(self._missing(source, name))
 
@@ -94,13 +95,12 @@ class TopicFinder:
         """Say that a topic was not recorded, and what is there instead."""
         others = [topic for topic in self._topics if _ends(topic.name, name)]
         if others:
-            instead = f"{others[0].name} is there, but as {_ros_type(others[0])}"
+            instead = f"{listed([others[0].name])} is there, but as {_ros_type(others[0])}"
         elif any(_ends(topic.name, name) for topic in self._empty):
             instead = "the topic is there, but without a message"
         else:
-            there = [f"{topic.name} ({_ros_type(topic)})" for topic in self._topics]
-            listed = ", ".join(there[:6]) + (f" and {len(there) - 6} more" if len(there) > 6 else "")
-            instead = f"it holds {listed}; see --remap and input.source"
+            there = listed([f"{topic.name} ({_ros_type(topic)})" for topic in self._topics])
+            instead = f"it holds {there}; see --remap and input.source"
         return f"no {name} ({source.type}) was recorded: {instead}"
 
 

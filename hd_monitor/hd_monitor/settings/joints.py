@@ -57,8 +57,9 @@ def split_joints(given: Mapping[str, Any]) -> dict[str, JointSettings]:
     flat = {name: value for name, value in flatten(given).items() if not _is_of_the_node(name)}
     joints = flat.pop("joints", None) or ["joint"]
     several = isinstance(joints, Sequence) and not isinstance(joints, str)
-    if not several or not all(isinstance(joint, str) and joint for joint in joints) or len(set(joints)) != len(joints):
-        raise ParameterError(f"joints = {joints!r} must be a list of different names")
+    named = several and all(isinstance(joint, str) and joint and joint.isprintable() for joint in joints)
+    if not named or len(set(joints)) != len(joints):
+        raise ParameterError(f"joints = {joints!r} must be a list of different names, each on one line")
     common = {name: value for name, value in flat.items() if name in _OF_JOINTS}
     rest = {name: value for name, value in flat.items() if name not in _OF_JOINTS}
     settings = {}

@@ -1,5 +1,6 @@
 """The replay command: its JSON, its report, its exit statuses, and one clear line for what it cannot use."""
 
+import html
 import json
 import math
 import re
@@ -207,3 +208,24 @@ def test_one_joint_of_several_can_be_selected(tmp_path: Path, capsys: pytest.Cap
     lines = capsys.readouterr().err.strip().splitlines()
     assert len(lines) == 1
     assert "joint_states carries a, b; set input.joint_name" in lines[0]
+
+
+def test_markup_from_outside_stays_text_on_the_page(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    evil = "<script>alert('&')</script>"
+    bag = rec.write(
+        tmp_path / "<b>bag&",
+        [
+            rec.Event(event.time, f"/<i>{event.topic}", event.message)
+            for event in rec.simulated(programme="fixed", fixed__speed=1200.0, duration=12.0, joint=evil)
+        ],
+    )
+    given = ["-p", 'joints:=["<u>j&"]', "-p", f'input.joint_name:="{evil}"', "-p", f'reducer.serial:="<s>{evil}"']
+    command = ["replay", str(bag), "--report", str(tmp_path / "report"), "--json", str(tmp_path / "r.json"), *given]
+    assert main(command) == 0, capsys.readouterr().err
+    command = ["compare", str(bag), str(tmp_path / "r.json"), "--report", str(tmp_path / "change"), *given]
+    assert main(command) == 0, capsys.readouterr().err
+    for folder, said in (("report", ("<b>bag&", "/<i>", "<u>j&", evil, "<s>")), ("change", ("<b>bag&", "<u>j&"))):
+        page = (tmp_path / folder / "index.html").read_text(encoding="utf-8")
+        for word in said:
+            assert word not in page
+            assert html.escape(word) in page.replace("&#34;", "&quot;").replace("&#39;", "&#x27;")

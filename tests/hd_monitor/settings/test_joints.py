@@ -41,7 +41,7 @@ def test_joints_are_a_list_of_different_names(joints):
         split_joints({"joints": joints})
 
 
-@pytest.mark.parametrize("joints", [[1], [""], 5, [["a"]]])
+@pytest.mark.parametrize("joints", [[1], [""], 5, [["a"]], ["left\narm"], ["\x1b[31mred"]])
 def test_joints_are_names(joints):
     with pytest.raises(ParameterError, match="joints"):
         split_joints({"joints": joints})
