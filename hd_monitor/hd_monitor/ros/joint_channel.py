@@ -46,7 +46,7 @@ class JointChannel:
         self._zoom = self._advertise(contract.ZOOM_SPECTRUM)
         self._rms = self._advertise(contract.RMS_CURVE)
         self.joint = joint
-        self.watch = JointWatch(joint, settings, now, self._explain)
+        self.watch = JointWatch(joint, settings, now, self._explain, self._explain_crowd)
 
     def _advertise(self, topic: str) -> LifecyclePublisher:
         publisher: LifecyclePublisher = self._node.create_lifecycle_publisher(
@@ -106,6 +106,10 @@ class JointChannel:
     def _explain(self, quantity: Quantity) -> str:
         subscription = self._subscriptions.get(quantity, self._motion)
         return subscription.explain_silence() if subscription is not None else ""
+
+    def _explain_crowd(self) -> str:
+        crowds = (subscription.explain_crowd() for subscription in self._subscriptions.values())
+        return "; ".join(filter(None, crowds))
 
     def _publish_curves(self) -> None:
         if (zoom := self.watch.zoom()) is not None:

@@ -1,7 +1,7 @@
 """One joint as the node sees it: its monitor, its last input, and the result. Knows no rclpy."""
 
 import traceback
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 from ..acquisition.presence import Loss, Presence
@@ -36,6 +36,8 @@ class JointWatch:
         The node's time [ns]; silence counts from here.
     explain : callable
         Asked where an input is lost.
+    explain_crowd : callable
+        Asked which inputs have several publishers; the answer is added to what the status says.
 
     Attributes
     ----------
@@ -47,10 +49,13 @@ class JointWatch:
         Traceback of the newest one; empty if there is none.
     """
 
-    def __init__(self, joint: str, settings: JointSettings, now: int, explain: Explain) -> None:
+    def __init__(
+        self, joint: str, settings: JointSettings, now: int, explain: Explain, explain_crowd: Callable[[], str]
+    ) -> None:
         self.joint = joint
         self.settings = settings
         self._explain = explain
+        self._explain_crowd = explain_crowd
         self.errors = 0
         self.last_error = ""
         self._presence = Presence(settings.sources, round(settings.input.timeout * NANOSECONDS))
@@ -162,6 +167,9 @@ class JointWatch:
     def _show(self, assessment: Assessment) -> None:
         if self.errors:
             assessment = replace(assessment, extra=(*assessment.extra, ("internal errors", str(self.errors))))
+        if crowd := self._explain_crowd():
+            reason = f"{assessment.verdict.reason}; {crowd}"
+            assessment = replace(assessment, verdict=replace(assessment.verdict, reason=reason))
         self.present = assessment
         if (key := self._key()) != self._told:
             self._told = key

@@ -93,6 +93,14 @@ class DrainedSubscription:
             return f"{_name(of_type[0])} publishes {self.topic} best-effort: set input.reliability to best_effort"
         return f"{_name(of_type[0])} publishes {self.topic} with an incompatible QoS"
 
+    def explain_crowd(self) -> str:
+        """Name the publishers where there are several, whose messages nobody can tell from each other; else empty."""
+        if self._node.count_publishers(self.topic) < 2:
+            return ""
+        names = sorted(map(_name, self._node.get_publishers_info_by_topic(self.topic)))
+        count = "two" if len(names) == 2 else len(names)
+        return f"{count} publishers on {self.topic}: {', '.join(names)}"
+
     def _namesakes(self) -> str:
         """Name a topic of the same type and last name that does have a publisher: a namespace may be wrong."""
         last = self.topic.rpartition("/")[2]

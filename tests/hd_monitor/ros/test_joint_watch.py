@@ -21,9 +21,13 @@ def explain(name: Quantity) -> str:
     return f"because of the {name}"
 
 
+def alone() -> str:
+    return ""
+
+
 def watch_of(**parameters: Any) -> JointWatch:
     settings = {name.replace("__", "."): value for name, value in parameters.items()}
-    return JointWatch("elbow", JointSettings.from_mapping(settings), START, explain)
+    return JointWatch("elbow", JointSettings.from_mapping(settings), START, explain, alone)
 
 
 def stamp_of(message: Any, time: float) -> Any:
@@ -103,7 +107,7 @@ def test_a_clock_that_is_set_back_restarts_the_silence() -> None:
 
 
 def test_a_simulated_clock_that_has_not_begun_is_named() -> None:
-    watch = JointWatch("elbow", JointSettings.from_mapping(), 0, explain)
+    watch = JointWatch("elbow", JointSettings.from_mapping(), 0, explain, alone)
     watch.check(0)
     assert "/clock" in watch.status().message
     watch.check(1000 * SECOND)  # its first time is not a thousand seconds of silence
@@ -128,6 +132,19 @@ def test_an_error_of_the_core_is_shown_and_the_joint_restarts(monkeypatch: pytes
     assert watch.feed(inputs_of(accelerations(101, 2.5), joint_states(101, 2.5)), START + 3 * SECOND)
     assert watch.status().value("fault_code") == "HD_UNDETERMINED"
     assert watch.status().value("internal errors") == "1"
+
+
+def test_several_publishers_are_named_beside_every_verdict() -> None:
+    crowd = "two publishers on /a: /b, /c"
+    watch = JointWatch(
+        "elbow", JointSettings.from_mapping({"input.source": "accel_stamped"}), START, explain, lambda: crowd
+    )
+    watch.feed(inputs_of(accelerations(100, 2.5), joint_states(100, 2.5)), START + 3 * SECOND)
+    assert watch.status().message.endswith(f"; {crowd}")
+    assert watch.status().value("reason").endswith(crowd)
+    crowd = ""
+    watch.feed(inputs_of(accelerations(102.5, 1), joint_states(102.5, 1)), START + 4 * SECOND)
+    assert "publishers" not in watch.status().message
 
 
 def test_new_limits_keep_the_evidence() -> None:
@@ -156,5 +173,5 @@ def test_only_inputs_that_are_used_are_missed(source: str, load: str, inputs: se
         return "silence"
 
     settings = JointSettings.from_mapping({"input.source": source, "load.source": load})
-    JointWatch("elbow", settings, START, note).check(START + 10 * SECOND)
+    JointWatch("elbow", settings, START, note, alone).check(START + 10 * SECOND)
     assert set(asked) == inputs

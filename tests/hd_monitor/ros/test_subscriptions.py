@@ -93,3 +93,14 @@ def test_a_silent_publisher_is_named(peer: Any) -> None:
         lambda: subscription.explain_silence() == "/test_peer publishes /torsional_acceleration but sends nothing",
         "the publisher in the graph",
     )
+
+
+def test_several_publishers_are_named(peer: Any) -> None:
+    from geometry_msgs.msg import AccelStamped
+
+    subscription = drained(peer, 10)
+    peer.publisher(AccelStamped, "torsional_acceleration")
+    assert subscription.explain_crowd() == ""
+    peer.publisher(AccelStamped, "torsional_acceleration")
+    expected = "two publishers on /torsional_acceleration: /test_peer, /test_peer"
+    peer.until(lambda: subscription.explain_crowd() == expected, "both publishers in the graph")
