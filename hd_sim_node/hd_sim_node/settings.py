@@ -81,7 +81,7 @@ class RigSettings:
             given = fill_group(self.values, "dynamics", Dynamics)
             remarks.append(
                 f"drive = {drive!r} has a natural frequency of {given.natural_frequency:g} Hz and an inertia of "
-                f"{given.inertia:g} kg·m²; give the monitor the same dynamics"
+                f"{given.inertia:g} kg·m²; give the monitor the same dynamics, and reducer.transmission_error: 1.0"
             )
         if defect != CUSTOM and any((*self.values["flexspline.beta"], *self.values["circular_spline.beta"])):
             remarks.append(
