@@ -3,7 +3,7 @@
 import re
 import tempfile
 from collections import Counter
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path, PurePath
 from typing import NamedTuple, Self
@@ -21,6 +21,10 @@ from .whole_mcap import WholeMcap
 
 STORAGE_SUFFIXES = (".mcap", ".db3")
 COMPRESSED_SUFFIXES = (".zstd", ".zst")
+
+
+_LARGEST_METADATA = 1_000_000
+"""Bytes of a metadata.yaml that are still read, in some seconds: 5000 files in a folder have no more."""
 
 
 class _Part(NamedTuple):
@@ -108,6 +112,7 @@ class Bag:
                     for batch in reader.batches(names):
                         yield from batch.unpacked(self._limit, lost)
                         delivered += np.bincount(batch.topics, minlength=len(names))
+                    self._count(given.name, reader, dict(zip(names, delivered.tolist(), strict=True)))
                     continue
                 except Exception as error:  # a parser of damaged files raises anything
                     cause = f"{given.name} is damaged ({one_line(error)})"
@@ -115,6 +120,15 @@ class Bag:
                     reader = self._walk(given, plain)
             for batch in in_batches(_salvaged(reader, names, delivered)):
                 yield from batch.unpacked(self._limit, lost)
+
+    def _count(self, file: str, reader: WholeMcap | WholeSqlite, delivered: Mapping[str, int]) -> None:
+        """Note the topics of which a file read to its end held fewer messages than it announces."""
+        announced: Counter[str] = Counter()
+        for name, _, messages in reader.topics():
+            announced[name] += messages
+        for name, count in delivered.items():
+            if count < announced[name]:
+                self._note(f"{file}: of {announced[name]} messages announced on {name}, {count} were found")
 
     def _open(self) -> tuple[RawTopic, ...]:
         if not self.path.exists():
@@ -159,7 +173,11 @@ class Bag:
             return []
         by_name = {file.name: file for file in found}
         try:
-            metadata = yaml.safe_load((self.path / "metadata.yaml").read_text(encoding="utf-8"))
+            with (self.path / "metadata.yaml").open("rb") as file:
+                content = file.read(_LARGEST_METADATA + 1)
+            if len(content) > _LARGEST_METADATA:
+                raise ValueError(f"it is larger than {_LARGEST_METADATA} bytes")
+            metadata = yaml.safe_load(content)
             names = [PurePath(path).name for path in metadata["rosbag2_bagfile_information"]["relative_file_paths"]]
         except Exception as error:  # damaged YAML is anything
             self._note(f"{self.path.name}: metadata.yaml cannot be read ({one_line(error)}); all its files are taken")

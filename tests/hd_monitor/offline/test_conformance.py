@@ -1,13 +1,17 @@
 """Every combination of MCAP's optional parts reads the same, however it is read."""
 
+import itertools
 import json
+import random
 import tarfile
 from collections.abc import Iterator
 from pathlib import Path, PurePath
+from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import pytest
-from tests.hd_monitor.offline.mcap_files import zstd
+from tests.hd_monitor.offline import mcap_files
+from tests.hd_monitor.offline.mcap_files import Sent, zstd
 
 from hd_monitor.offline.bag import Bag
 from hd_monitor.offline.errors import BagError
@@ -86,3 +90,55 @@ def test_every_variant_gives_its_messages(tmp_path: Path, variants: list[Variant
         assert bool(notes) is (form in {"in a folder", "not closed"}), notes
         if "-ch-" in variant.name:  # messages of a chunk come by time, those outside chunks as they were written
             assert [row[2] for row in found] == sorted(row[2] for row in found), variant.name
+
+
+TOPICS = ("/a", "/b")
+
+
+def chunks_of(dice: random.Random, first: int, *, overlapping: bool) -> list[list[Sent]]:
+    """Chunks of messages of all lengths, some without any; overlapping in time or one after the other."""
+    chunks = []
+    for number in range(4):
+        begin = first + (0 if overlapping else 1000 * number)
+        count = dice.choice([0, 1, 30])
+        chunks.append([Sent(dice.randint(1, 2), begin + dice.randrange(999), dice.randbytes(n)) for n in range(count)])
+    return [*chunks, [Sent(1, first + 5000, b"last")]]
+
+
+@pytest.mark.parametrize("compression", ["", "lz4", "zstd"])
+@pytest.mark.parametrize("overlapping", [False, True])
+@pytest.mark.parametrize("checksum", ["none", "right", "wrong"])
+@pytest.mark.parametrize("files", [1, 3])
+@pytest.mark.parametrize("closed", [True, False])
+def test_our_own_variants_give_their_messages(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    compression: str,
+    overlapping: bool,
+    checksum: str,
+    files: int,
+    closed: bool,
+) -> None:
+    dice = random.Random(1)
+    if checksum == "wrong":
+        monkeypatch.setattr(mcap_files, "zlib", SimpleNamespace(crc32=lambda _: 1))
+    sent = []
+    for number in range(files):
+        chunks = chunks_of(dice, 10_000 * number + 1, overlapping=overlapping)
+        path = tmp_path / f"bag_{number}.mcap"
+        options = {"compression": compression, "checksum": checksum != "none"}
+        mcap_files.write(path, chunks, TOPICS, **options)  # type: ignore[arg-type]
+        if not closed:
+            path.write_bytes(path.read_bytes()[:-8])
+        sent += [(TOPICS[m.channel - 1], m.time, m.data) for m in itertools.chain(*chunks)]
+    with Bag(tmp_path if files > 1 else path) as bag:
+        found = list(map(tuple, bag.messages(TOPICS)))
+    notes = "; ".join(note for note in bag.notes if "metadata.yaml" not in note)
+    assert sorted(found) == sorted(sent)
+    if closed and checksum != "wrong":
+        assert found == sorted(sent, key=lambda row: row[1])
+        assert not notes
+    elif closed:
+        assert notes.count("the checksum of a chunk is wrong") == files
+    else:
+        assert notes.count("is not whole") == files

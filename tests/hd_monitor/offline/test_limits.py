@@ -69,6 +69,7 @@ def test_a_chunk_beyond_the_limit_is_left_out_and_the_others_are_read(tmp_path: 
     assert data == [b"hello", b"bye"]
     assert notes.startswith("a.mcap: a chunk was left out (")
     assert "--chunk-limit permits 1048576" in notes
+    assert "of 3 messages announced on /a, 2 were found" in notes
     path.write_bytes(path.read_bytes()[:-8])  # without its end, it is walked through
     data, notes = read(path, MIB)
     assert data == [b"hello", b"bye"]
@@ -202,6 +203,22 @@ def test_names_in_the_metadata_never_lead_out_of_the_folder(tmp_path: Path, name
     data, notes = read(folder)
     assert data == [HELLO.data]
     assert "missing" in notes
+
+
+def test_metadata_of_any_size_is_not_parsed(tmp_path: Path) -> None:
+    mcap_files.write(tmp_path / "in.mcap", [[HELLO]], ["/a"])
+    (tmp_path / "metadata.yaml").write_text("[" * 2_000_000)
+    data, notes = read(tmp_path)
+    assert data == [HELLO.data]
+    assert "metadata.yaml cannot be read (it is larger than 1000000 bytes)" in notes
+
+
+def test_messages_that_are_announced_but_not_there_are_noted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    statistics = mcap_files._statistics
+    monkeypatch.setattr(mcap_files, "_statistics", lambda messages, *counts: statistics([*messages, HELLO], *counts))
+    data, notes = read(mcap_files.write(tmp_path / "a.mcap", [[HELLO]], ["/a"]))
+    assert data == [HELLO.data]
+    assert notes == "a.mcap: of 2 messages announced on /a, 1 were found"
 
 
 def test_a_channel_in_another_serialisation_is_named_with_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
