@@ -101,8 +101,9 @@ class Monitor:
         """Return what a node would show at the end of the data; a bag shorter than a period is assessed as it is."""
         self.advance()
         if self.latest is None:
+            last = max(self._intake.newest.values(), default=0)
             for period in self._intake.rest():
-                self._assess(period)
+                self._assess(period, now=min(period.end, last))  # what follows the data is no silence
         return self.latest
 
     def silence(self, now: int) -> Assessment:
@@ -126,7 +127,7 @@ class Monitor:
 
     # One period ----------------------------------------------------------------------------------------------------
 
-    def _assess(self, period: Period) -> Assessment:
+    def _assess(self, period: Period, now: int | None = None) -> Assessment:
         if period.cut:
             self._recorder.cut()
             self._presence.start(period.start)
@@ -136,7 +137,7 @@ class Monitor:
                 newest = int(samples.stamps.max())
                 self._presence.note(quantity, newest, newest if quantity in assembled.usable else None)
         self._evidence.add(assembled)
-        losses = self._presence.losses(period.end)
+        losses = self._presence.losses(period.end if now is None else now)
         if losses:
             verdict = lost(losses, self._recorder.last_fault, self._presence.timeout)
         else:
