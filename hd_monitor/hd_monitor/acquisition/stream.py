@@ -95,6 +95,7 @@ class StampedBuffer:
         self._epochs: deque[_Epoch] = deque([_Epoch()])
         self._suspects: list[Samples] = []
         self._suspected = 0  # samples in these
+        self._standing = 0  # samples held whose stamp is the newest one again
         self.late = 0
         self.disordered = 0
         self.jumps = 0
@@ -161,7 +162,12 @@ class StampedBuffer:
     def _append(self, epoch: _Epoch, chunk: _Chunk) -> None:
         stamps, values, ordered = chunk
         low, high = (int(stamps[0]), int(stamps[-1])) if ordered else (int(stamps.min()), int(stamps.max()))
-        room = self._room(epoch.size, high - (low if epoch.oldest is None else min(low, epoch.oldest)), stamps.size)
+        if standing := low == high == epoch.newest:
+            room = self._room(self._standing, 0, stamps.size)
+        else:
+            oldest = low if epoch.oldest is None else min(low, epoch.oldest)
+            room = self._room(epoch.size, high - oldest, stamps.size)
+        self._standing = self._standing + room if standing else 0
         if room:
             whole = room == stamps.size
             epoch.chunks.append(chunk if whole else _Chunk(stamps[:room].copy(), values[:room].copy(), ordered))

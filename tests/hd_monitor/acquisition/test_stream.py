@@ -95,7 +95,9 @@ def held(buffer: StampedBuffer) -> int:
 
 @pytest.mark.parametrize("leap", [0, -5, 3600])
 def test_stamps_that_stand_still_do_not_fill_the_memory(leap: int) -> None:
-    stamps = [4000 * CLOCK_JUMP, 4000 * CLOCK_JUMP + MS] + [(4000 + leap) * CLOCK_JUMP + MS] * 3 * MOST_AT_ONCE
+    stamps = [4000 * CLOCK_JUMP, 4000 * CLOCK_JUMP + 900 * MS] + [
+        (4000 + leap) * CLOCK_JUMP + 900 * MS
+    ] * 3 * MOST_AT_ONCE
     buffer = buffer_of(stamps, 50)
     dropped, kept = buffer.dropped, held(buffer)
     assert dropped + kept + buffer._suspected == len(stamps)
