@@ -99,7 +99,7 @@ class Problem:
     active : ndarray of bool, shape (unknowns,)
         Unknowns that may move.
     patience : int
-        Factor on the rounds of a fit.
+        Factor on the rounds of a fit from one start.
     """
 
     segments: Sequence[Segment]
@@ -161,7 +161,7 @@ class Problem:
         """Size of what the model is beyond linear over the next step, in standard deviations of the unknowns."""
         unknowns = self.predictor.unknowns
         part = np.abs(fit.step) / unknowns.linear_range()
-        forces = unknowns.mask(unknowns.load, unknowns.torque, unknowns.inertia)
+        forces = unknowns.mask(unknowns.load, unknowns.displacement, unknowns.torque, unknowns.inertia)
         information = fit.equations.information + self.prior.matrix
         forced, rest = (
             math.sqrt(max(float(step @ information @ step), 0.0)) for step in (fit.step * forces, fit.step * ~forces)
@@ -192,8 +192,9 @@ class Problem:
         """
         unknowns = self.predictor.unknowns
         held = self.active & ~unknowns.mask(unknowns.load)
-        first = [replace(self, active=held).solve(start, rounds=1) for start in starts]
-        tried = sorted((self._scaled(fit)._priced(fit.values, _TRIAL_ROUNDS) for fit in first), key=lambda t: t[0])
+        brief = replace(self, patience=1)
+        first = [replace(brief, active=held).solve(start, rounds=1) for start in starts]
+        tried = sorted((brief._scaled(fit)._priced(fit.values, _TRIAL_ROUNDS) for fit in first), key=lambda t: t[0])
         final = [problem._scaled(fit)._priced(fit.values, rounds) for _, problem, fit in tried[:_FINALISTS]]
         _, problem, fit = min(final, key=lambda t: t[0])
         return problem, fit

@@ -71,7 +71,7 @@ class ToothTrial:
         builder = replace(self.builder, reducer=reducer, keep_tones=True)
         try:
             segments = [builder.build([record], None) for record in _records(problem.segments)]
-            own = replace(problem, segments=segments, floor=signal_level(segments))
+            own = replace(problem, segments=segments, floor=signal_level(segments), patience=1)
             if start is not None:
                 return own.solve(start, rounds=_ROUNDS)
             u = problem.predictor.unknowns
