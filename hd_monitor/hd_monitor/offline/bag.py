@@ -10,7 +10,6 @@ from typing import NamedTuple, Self
 
 import numpy as np
 import yaml
-from numpy.typing import NDArray
 
 from .batches import Batch, RawMessage, RawTopic, Window, in_batches
 from .compression import CHUNK_LIMIT, decompress_file
@@ -106,13 +105,13 @@ class Bag:
             def lost(place: int, cause: str, file: str = given.name) -> None:
                 self._note(f"{file}: messages of {names[place]} were left out ({cause})")
 
-            delivered = np.zeros(len(names), dtype=np.intp)
+            delivered = _Delivered(len(names))
             if not isinstance(reader, Walk):
                 try:
                     for batch in reader.batches(names):
                         yield from batch.unpacked(self._limit, lost)
-                        delivered += np.bincount(batch.topics, minlength=len(names))
-                    self._count(given.name, reader, dict(zip(names, delivered.tolist(), strict=True)))
+                        delivered.add(batch)
+                    self._count(given.name, reader, dict(zip(names, delivered.counts.tolist(), strict=True)))
                     continue
                 except Exception as error:  # a parser of damaged files raises anything
                     cause = f"{given.name} is damaged ({one_line(error)})"
@@ -238,17 +237,37 @@ class Bag:
             self.notes.append(sentence)
 
 
-def _salvaged(walk: Walk, names: Sequence[str], delivered: NDArray[np.intp]) -> Iterator[tuple[int, int, bytes]]:
-    """Yield what is whole in a file, but for as many messages of each topic as have been delivered already."""
+class _Delivered:
+    """What of a file has been read in bulk, in order of time: it need not be given again."""
+
+    def __init__(self, topics: int) -> None:
+        self.counts = np.zeros(topics, dtype=np.intp)
+        self._newest = np.zeros(topics, dtype=np.intp)  # messages of the time last read
+        self._until: int | None = None
+
+    def add(self, batch: Batch) -> None:
+        """Take note of messages, at least one."""
+        topics, last = self.counts.size, int(batch.times[-1])
+        self.counts += np.bincount(batch.topics, minlength=topics)
+        newest = np.bincount(batch.topics[batch.times == batch.times[-1]], minlength=topics)
+        self._newest = newest + (self._newest if last == self._until else 0)
+        self._until = last
+
+    def covers(self, time: int, place: int) -> bool:
+        """Whether the next message of this time and topic is among them; of equal times the first are."""
+        if self._until is None or time != self._until:
+            return self._until is not None and time < self._until
+        self._newest[place] -= 1
+        return bool(self._newest[place] >= 0)
+
+
+def _salvaged(walk: Walk, names: Sequence[str], delivered: _Delivered) -> Iterator[tuple[int, int, bytes]]:
+    """Yield what is whole in a file and has not been delivered yet."""
     places = {name: place for place, name in enumerate(names)}
     for name, time, data in walk.messages():
         place = places.get(name)
-        if place is None:
-            continue
-        if delivered[place]:
-            delivered[place] -= 1
-            continue
-        yield time, place, data
+        if place is not None and not delivered.covers(time, place):
+            yield time, place, data
 
 
 def _is_storage(file: Path) -> bool:

@@ -244,3 +244,14 @@ def test_times_outside_those_announced_are_noted_and_lose_no_message(tmp_path: P
     rows, notes = by_us(path)
     assert rows == everything(FIVE)
     assert "other times than announced" in " ".join(notes)
+
+
+def test_damage_among_chunks_that_overlap_loses_no_message_and_gives_none_twice(tmp_path: Path) -> None:
+    chunks = [some(0, 20), some(50, 10), some(120, 10), some(250, 10)]
+    path = mcap_files.write(tmp_path / "a.mcap", chunks, TOPICS)
+    raw = bytearray(path.read_bytes())
+    raw[raw.rindex(mcap_files.message_record(chunks[2][3])) + 9 + 22] ^= 0xFF
+    path.write_bytes(raw)
+    rows, notes = by_us(path)
+    assert sorted(row[1] for row in rows) == sorted(message.time for chunk in chunks for message in chunk)
+    assert "checksum" in " ".join(notes)
