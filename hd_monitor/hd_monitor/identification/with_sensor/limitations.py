@@ -6,8 +6,9 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from ...limitation import Limitation, LimitationCode, blocker, doubt
+from ...reducer import LinePair
 from ..fit.gauss_newton import Fit, FitStatus
-from ..fit.indexes import Indexes
+from ..fit.indexes import Indexes, stiffness_indexes
 from ..fit.score_test import ScoreTest, score_tests
 from ..fit.unknowns import TORQUE_LINES
 from .context import Context
@@ -78,13 +79,22 @@ def _missing(context: Context, state: State, fit: Fit, indexes: Indexes) -> Limi
     if coverage.time < _LEAST_MOTION:
         return blocker(LimitationCode.MOTION_TOO_SHORT, motion_s=coverage.time, needed_s=_LEAST_MOTION)
     scale = max(warn_index, *indexes.index) if state.relative else warn_index
-    if min(indexes.std) <= _VAGUE * scale:
+    if min(_index_std(context, state, fit, indexes)) <= _VAGUE * scale:
         return None
     return blocker(
         LimitationCode.LINES_TOO_WEAK,
         speed_rpm=_mean_rpm(context, state),
         signal_to_noise_db=fit.signal_to_noise,
     )
+
+
+def _index_std(context: Context, state: State, fit: Fit, indexes: Indexes) -> LinePair:
+    """Standard deviations of the indexes, were there no transmission error: its likeness does not make lines weak."""
+    u = context.unknowns
+    if not u.transmission_error:
+        return indexes.std
+    active = state.active & ~u.mask(u.displacement)
+    return stiffness_indexes(u, fit.values, state.inflation * context.known(state).covariance(active)).std
 
 
 def _mean_rpm(context: Context, state: State) -> float:
