@@ -12,6 +12,7 @@ _FAULTS = {
     "gaps": "gaps", "duplicates": "duplicates", "out_of_order": "out of order", "not_finite": "not finite",
     "clipped": "clipped", "stuck": "stuck", "spikes": "spikes", "clock_jumps": "clock jumps",
     "motion_faults": "bad joint states", "torque_faults": "bad torque samples", "rejected": "rejected",
+    "dropped": "dropped",
 }  # fmt: skip
 """Names of the counters of a `Quality`."""
 
