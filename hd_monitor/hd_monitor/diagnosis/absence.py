@@ -39,7 +39,7 @@ def lost(losses: Sequence[Loss], fault: str, timeout: float) -> Verdict:
     if silent := [loss.quantity for loss in losses if loss.silent]:
         return _error(
             f"No {_listed(silent)} for {timeout:g} s or more while other input continues: "
-            "check the publisher, the topic's name and the stamps",
+            "check the publisher, the topic's name and the stamps" + (f"; last complaint: {fault}" if fault else ""),
             FaultCode.INPUT_LOST,
         )
     words = _WORDS[losses[0].quantity]
