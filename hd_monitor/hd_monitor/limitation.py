@@ -34,6 +34,7 @@ class LimitationCode(StrEnum):
     TRAVEL_TOO_SHORT = "travel_too_short"
     MOTION_TOO_SHORT = "motion_too_short"
     LINES_TOO_WEAK = "lines_too_weak"
+    LINES_ABSENT = "lines_absent"
     # What the model does not explain
     LINES_UNEXPLAINED = "lines_unexplained"
     UNCERTAINTY_WIDENED = "uncertainty_widened"

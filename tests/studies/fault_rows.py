@@ -66,7 +66,7 @@ FAULTS: dict[str, Fault] = {
     "dead": Fault(
         fault="sensor dead: noise alone is left",
         rig={"sensor.fault": "dead"},
-        gap="a dead sensor is taken for a sound reducer",
+        cause="hears nothing",
     ),
     "dies": Fault(
         fault="sensor dead from the sixth second on",

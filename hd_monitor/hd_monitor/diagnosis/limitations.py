@@ -95,6 +95,10 @@ SENTENCES: Mapping[LimitationCode, str] = {
         "The lines are too weak against the noise at {speed_rpm:.0f} rpm (signal to noise {signal_to_noise_db:.0f} "
         "dB): turn faster, load the joint more, or record for longer"
     ),
+    LimitationCode.LINES_ABSENT: (
+        "The sensor hears nothing of this joint: neither spline's line rises above the noise, as even those of a sound "
+        "reducer do; check that the sensor works and that it is mounted on this joint"
+    ),
     LimitationCode.LINES_UNEXPLAINED: (
         "{unexplained_percent:.0f} % of the vibration at the lines is not explained by the model: check teeth, mount, "
         "natural frequency and torque, and look for another source of vibration near the lines (mains hum, a "

@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterator, Mapping
 
 import numpy as np
+from scipy.special import chdtri
 
 from ...limitation import Limitation, LimitationCode, blocker, doubt
 from ...reducer import LinePair
@@ -28,6 +29,7 @@ _WIND_UP = 0.25  # rad; no reducer takes it
 _BAND = 0.9  # of half the sampling rate
 _CORRECTED_FREQUENCY, _CORRECTED_DAMPING, _CORRECTED_TORQUE = 0.02, 0.3, 0.25
 _CORRECTED_DELAY = 1e-3  # s
+_CHANCE = 1e-3  # of noise alone to reach what counts as a line
 _BELIEVED_FREQUENCY = 0.3  # of ln fn, beyond which a first-order estimate of it means nothing
 
 
@@ -80,12 +82,21 @@ def _missing(context: Context, state: State, fit: Fit, indexes: Indexes) -> Limi
         return blocker(LimitationCode.MOTION_TOO_SHORT, motion_s=coverage.time, needed_s=_LEAST_MOTION)
     scale = max(warn_index, *indexes.index) if state.relative else warn_index
     if min(_index_std(context, state, fit, indexes)) <= _VAGUE * scale:
-        return None
+        return blocker(LimitationCode.LINES_ABSENT) if _are_absent(context, state, fit) else None
     return blocker(
         LimitationCode.LINES_TOO_WEAK,
         speed_rpm=_mean_rpm(context, state),
         signal_to_noise_db=fit.signal_to_noise,
     )
+
+
+def _are_absent(context: Context, state: State, fit: Fit) -> bool:
+    """Whether noise alone explains all that was found at both splines' lines: no lines are no proof of health."""
+    u = context.unknowns
+    lines = u.mask(u.stiffness, u.displacement)
+    # What the lines change in the prediction, in standard deviations of the noise
+    found, information = fit.values[lines], state.information.matrix[np.ix_(lines, lines)]
+    return float(found @ information @ found) < state.inflation * float(chdtri(found.size, _CHANCE))
 
 
 def _index_std(context: Context, state: State, fit: Fit, indexes: Indexes) -> LinePair:

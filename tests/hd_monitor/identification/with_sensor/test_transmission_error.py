@@ -30,3 +30,11 @@ def test_where_no_error_is_expected_none_is_estimated():
     assert found is not None
     assert found.transmission_error is None
     assert found.transmission_error_std is None
+
+
+def test_a_sensor_that_hears_nothing_proves_nothing():
+    """Only noise where even a sound reducer's lines would show: no verdict, and no health."""
+    rig, *_ = random_drive("varying", 3, 12.0)
+    last = watch(rig | {"sensor.fault": "dead"}, 0.0)
+    assert last.verdict.component.value == "undetermined"
+    assert "hears nothing" in last.verdict.reason
