@@ -10,12 +10,14 @@ warn limit, random mean torque, gravity of an eccentric load that no effort tell
 import argparse
 import sys
 from collections import Counter
+from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
 from typing import Any
 
 import numpy as np
 from scipy.stats import beta
 
+from hd_monitor.assessment import Assessment
 from hd_monitor.monitor import Monitor
 from hd_monitor.settings import JointSettings
 from hd_monitor.sources import Quantity
@@ -69,12 +71,9 @@ def random_unit(seed: int, seconds: float) -> tuple[dict[str, Any], dict[str, An
     return rig, common | {"load.torque": mean}
 
 
-def verdicts(case: tuple[int, float]) -> Counter[str]:
-    """Count the components named in one run."""
-    seed, seconds = case
-    rig, watched = random_unit(seed, seconds)
+def assessed(rig: dict[str, Any], watched: dict[str, Any]) -> Iterator[Assessment]:
+    """Iterate over the assessments of a simulated rig by a monitor, each with its parameters."""
     monitor = Monitor(JointSettings.from_mapping(watched))
-    counted: Counter[str] = Counter()
     for stretch in Simulation(RigSettings.from_mapping(rig)):
         joint = stretch.joint
         unknown = np.full(len(joint), np.nan)
@@ -82,8 +81,12 @@ def verdicts(case: tuple[int, float]) -> Counter[str]:
         effort = unknown if joint.effort is None else joint.effort
         monitor.add(Quantity.MOTION, EPOCH + joint.stamps, joint.position, velocity, effort)
         monitor.add(Quantity.VIBRATION, EPOCH + stretch.stamps, stretch.samples)
-        counted.update(str(assessment.verdict.component) for assessment in monitor.advance())
-    return counted
+        yield from monitor.advance()
+
+
+def verdicts(case: tuple[int, float]) -> Counter[str]:
+    """Count the components named in one run."""
+    return Counter(str(assessment.verdict.component) for assessment in assessed(*random_unit(*case)))
 
 
 def alarms_in(counted: Counter[str]) -> int:

@@ -17,18 +17,17 @@ from collections import Counter
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from hd_monitor.assessment import Assessment
-from hd_monitor.monitor import Monitor
-from hd_monitor.settings import JointSettings
-from hd_monitor.sources import Quantity
-from hd_sim_node.settings import RigSettings
-from hd_sim_node.simulation import Simulation
 
-EPOCH = 1_700_000_000_000_000_000
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+
+from tests.studies.false_alarms import assessed
+
 SETS = ("varying", "sweep", "steady", "error", "sound")
 SPLINES = ("circular_spline", "flexspline")
 GIVEN = (0.0, 1.0)
@@ -86,17 +85,8 @@ def random_drive(
 def watch(rig: dict[str, Any], given: float) -> Assessment:
     """Return the last assessment of a rig by a monitor that expects an error of so many arcmin."""
     shared = {name: value for name, value in rig.items() if name.startswith("dynamics.")}
-    monitor = Monitor(JointSettings.from_mapping(shared | {"reducer.transmission_error": given}))
-    assessments: list[Assessment] = []
-    for stretch in Simulation(RigSettings.from_mapping(rig)):
-        joint = stretch.joint
-        unknown = np.full(len(joint), np.nan)
-        velocity = unknown if joint.velocity is None else joint.velocity
-        effort = unknown if joint.effort is None else joint.effort
-        monitor.add(Quantity.MOTION, EPOCH + joint.stamps, joint.position, velocity, effort)
-        monitor.add(Quantity.VIBRATION, EPOCH + stretch.stamps, stretch.samples)
-        assessments += monitor.advance()
-    return assessments[-1]
+    *_, last = assessed(rig, shared | {"reducer.transmission_error": given})
+    return last
 
 
 @dataclass

@@ -75,12 +75,12 @@ class DefectGrowth:
         """
         if not self.any:
             return Growth(), Growth()
-        second = _SECONDS.get(self.unit)
-        progress = ((strokes if second is None else times / second) - self.start) / self.length
-        rate = 0.0 if second is None else ((progress >= 0.0) & (progress < 1.0)) / (self.length * second)
+        unit = _SECONDS.get(self.unit)
+        progress = ((strokes if unit is None else times / unit) - self.start) / self.length
+        rate = 0.0 if unit is None else ((progress >= 0.0) & (progress < 1.0)) / (self.length * unit)
         progress = np.clip(progress, 0.0, 1.0)
-        first, second_spline = (
-            Growth(1.0 + (final - 1.0) * progress, (final - 1.0) * rate)
-            for final in (self.flexspline, self.circular_spline)
-        )
-        return first, second_spline
+
+        def grown_to(final: float) -> Growth:
+            return Growth(1.0 + (final - 1.0) * progress, (final - 1.0) * rate)
+
+        return grown_to(self.flexspline), grown_to(self.circular_spline)
