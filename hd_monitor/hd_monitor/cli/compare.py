@@ -53,7 +53,7 @@ def _result(path: Path, arguments: argparse.Namespace) -> Mapping[str, Any]:
         content = json.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise BagError(f"{path} cannot be read: {error.strerror}; check the path") from None
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:  # the latter of thousands of brackets
         raise BagError(f"{path} is not JSON ({error}); give what hd-monitor replay --json wrote, or a bag") from None
     keys = ("joint", "verdict", "rms_curve")
     if not (

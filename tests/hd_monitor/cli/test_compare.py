@@ -66,7 +66,14 @@ def test_a_recording_compared_with_itself_has_not_changed(
 
 @pytest.mark.parametrize(
     ("content", "words"),
-    [("{", "is not JSON"), ("{}", "is not what"), ('{"joints": []}', "no joint in common"), ("[1]", "is not what")],
+    [
+        ("{", "is not JSON"),
+        (100_000 * "[", "is not JSON"),
+        ("{}", "is not what"),
+        ('{"joints": []}', "no joint in common"),
+        ("[1]", "is not what"),
+    ],
+    ids=["cut off", "nested", "empty", "no joints", "a list"],
 )
 def test_a_file_that_is_not_a_result_is_refused_in_one_line(
     bags: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str], content: str, words: str

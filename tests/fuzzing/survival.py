@@ -1,4 +1,9 @@
-"""Hostile inputs and the check that a reader survives them: only the project's own errors, bounded time and memory."""
+"""Hostile inputs and the check that a reader survives them: only the project's own errors, bounded time and memory.
+
+Every run tries the same few thousand inputs. A million others, for an hour or so:
+
+    python -m pytest tests/fuzzing --hypothesis-profile=fuzz
+"""
 
 import os
 import signal
