@@ -19,6 +19,8 @@ class LimitationCode(StrEnum):
     TORQUE_ABSURD = "torque_absurd"
     TEETH_CONTRADICTED = "teeth_contradicted"
     TEETH_CONTRADICTED_VAGUELY = "teeth_contradicted_vaguely"
+    TEETH_AMBIGUOUS = "teeth_ambiguous"
+    MOTOR_LINE = "motor_line"
     VALUE_ON_BOUND = "value_on_bound"
     # What the input says cannot be
     VELOCITY_ZERO = "velocity_zero"

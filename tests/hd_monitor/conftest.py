@@ -44,3 +44,19 @@ def ur10e(recording):
         )
 
     return joint
+
+
+@pytest.fixture(scope="session")
+def franka(recording):
+    """Joint samples of a Franka arm by joint (1 … 7); the effort is the joint torque [N·m]."""
+    table = np.loadtxt(recording("franka/panda.csv.gz"), delimiter=",")
+
+    def joint(number: int) -> JointSamples:
+        return JointSamples(
+            times=table[:, 0] - table[0, 0],
+            angle=table[:, number],
+            speed=table[:, 7 + number],
+            effort=table[:, 14 + number],
+        )
+
+    return joint

@@ -48,6 +48,16 @@ SENTENCES: Mapping[LimitationCode, str] = {
         "Check the tooth numbers: {other} teeth, or numbers close to these, explain the vibration far better than "
         f"{_CORRECT_TEETH}"
     ),
+    LimitationCode.TEETH_AMBIGUOUS: (
+        "Over {travel_deg:.0f}° of travel {other} teeth explain the lines as well as the {given} given, and with them "
+        "the same line may accuse the other spline: check reducer.flexspline_teeth and reducer.circular_spline_teeth "
+        "against the type plate, or let the joint turn further"
+    ),
+    LimitationCode.MOTOR_LINE: (
+        "The line at {order:g} cycles per output revolution is once per motor revolution of {other} teeth, both of "
+        "whose lines stand out, while only one of the {given} given does: check reducer.flexspline_teeth and "
+        "reducer.circular_spline_teeth"
+    ),
     LimitationCode.VALUE_ON_BOUND: (
         "the fit ended on the limit of its search for {names}, so the value there is not a measurement: check the "
         "parameters"

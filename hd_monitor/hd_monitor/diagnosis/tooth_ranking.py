@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass
 
+from ..identification.teeth.candidates import ToothPair
 from ..identification.teeth.ranking import MARGIN, ToothPairRanking
 
 
@@ -54,6 +55,10 @@ class ConcludedRanking(ToothPairRanking):
             )
         if self.margin < MARGIN:
             why = f"{self.ranked[1].teeth} nearly as well (odds {math.exp(self.margin):.0f} to 1 over {travel})"
+        elif double := self._double():
+            why = (
+                f"the line at {best.lines[0]:g} is once per motor revolution of {double}, both of whose lines stand out"
+            )
         elif best.lines_found < 2 or self.as_pair < MARGIN:
             why = f"a single line explains {travel} nearly as well, and may be something else's"
         elif math.isfinite(self.speed):
@@ -65,3 +70,11 @@ class ConcludedRanking(ToothPairRanking):
         else:
             return None
         return f"{best.teeth} teeth fit best but {why}: not conclusive"
+
+    def _double(self) -> ToothPair | None:
+        """Pair of about twice the teeth whose motor explains the leader's only line; None if there is none."""
+        best = self.ranked[0]
+        if best.lines_found != 1:
+            return None
+        full = {found.teeth for found in self.ranked if found.lines_found == 2}
+        return next((pair for pair in best.teeth.doubled() if pair in full and 2.0 * best.lines[0] in pair), None)

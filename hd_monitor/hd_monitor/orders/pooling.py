@@ -87,7 +87,9 @@ class SegmentPool:
         ]
 
     def groups(self, number: int) -> Iterator[tuple[str, tuple[JointSegment, ...], Products]]:
-        """Yield name, segments and products of every group, for one set of orders by its number."""
+        """Yield name, segments and products of every group, for one set of orders by its number; none without that."""
+        if number >= len(self._orders):
+            return
         for name, group in self._groups():
             total = pool(products for pooled in group if (products := pooled.products[number]) is not None)
             if total is not None:

@@ -16,12 +16,10 @@ from ...orders.regression import LineFit, solve
 from ...reducer import LinePair, Mount
 from ...settings import JointSettings
 from ..result import Identification, LineEstimate
-from ..teeth.candidates import ToothPair, surroundings, with_neighbours
-from ..teeth.ranking import rank
+from ..teeth.candidates import Candidate, ToothPair, surroundings, with_neighbours
+from ..teeth.ranking import FitLines
 from .agreement import DirectionEvidence, disagreements
-
-BETTER_TEETH = math.log(1e4)
-"""Difference of log evidence, odds of 10 000 to 1, by which other teeth must lead; several are compared."""
+from .teeth import question_motor, question_teeth
 
 _ENOUGH_MESSAGES = 100
 _NOTABLE, _NEARLY_ALL = 0.1, 0.9  # parts of the motion that are too fast
@@ -66,9 +64,11 @@ class SensorlessIdentifier:
         motor = (reduction, 2.0 * reduction)
         orders = [LineOrders.of_pair(LinePair(cs, fs), k, motor) for k in range(1, settings.analysis.harmonics + 1)]
         self._candidates = with_neighbours(settings.reducer)
+        doubled = [Candidate(teeth=teeth) for teeth in ToothPair.of(settings.reducer).doubled()]
         minimum_speed = settings.analysis.minimum_speed * 2.0 * np.pi / 60.0 / reduction
         self._cutter = JointSegmentCutter(settings.input.source, (cs, fs), minimum_speed)
-        self._pool = SegmentPool([*orders, surroundings(self._candidates, motor)], settings.analysis.memory)
+        around = [surroundings(candidates, motor) for candidates in (self._candidates, doubled) if candidates]
+        self._pool = SegmentPool([*orders, *around], settings.analysis.memory)
         self._messages = 0
         self._usable = 0
         self._latest: Identification | None = None
@@ -142,7 +142,7 @@ class SensorlessIdentifier:
             misfit=float(np.mean([fit.floor for fit in fits])),
             limitations=(
                 *self._doubts(index),
-                *self._other_teeth(),
+                *self._questioned_teeth(float(np.ptp(angles))),
                 *disagreements(self._directions, reducer.output_orders, settings.diagnosis.confidence),
             ),
             load_fluctuation=math.nan,
@@ -157,15 +157,17 @@ class SensorlessIdentifier:
                 std = np.sqrt(np.diag(covariance))
                 yield LineEstimate(k=number + 1, amplitude=LinePair(*mean.tolist()), std=LinePair(*std.tolist()))
 
-    def _other_teeth(self) -> tuple[Limitation, ...]:
-        """Limit the result if tooth numbers near those given fit better."""
-        groups = self._pool.groups(self._settings.analysis.harmonics)
-        parts = [partial(solve, products) for _, _, products in groups]
-        ranking = rank(self._candidates, parts)
+    def _questioned_teeth(self, travel: float) -> tuple[Limitation, ...]:
+        """Limit the result if other tooth numbers than those given, near them or doubled, may be the right ones."""
         given = self._settings.reducer
-        # Only both lines are evidence: one of them fits two pairs
-        better = ranking.lead(ToothPair.of(given)) >= BETTER_TEETH and ranking.ranked[0].lines_found == 2
-        return (ranking.contradiction(given),) if better else ()
+        near, doubled = (self._parts(self._settings.analysis.harmonics + place) for place in (0, 1))
+        steady = math.isfinite(one_speed(self._pool.segments))
+        reasons = question_teeth(given, self._candidates, near, travel=travel, one_speed=steady)
+        return reasons or question_motor(given, [*near, *doubled])
+
+    def _parts(self, number: int) -> list[FitLines]:
+        """One function a direction that fits lines to it, for one set of orders by its number; none without it."""
+        return [partial(solve, products) for _, _, products in self._pool.groups(number)]
 
     def _doubts(self, index: LinePair) -> Iterator[Limitation]:
         """Doubts beside the name that the shares suggest, apart from the evidence itself."""

@@ -14,6 +14,9 @@ from ...reducer import WAVE_GENERATOR_LOBES, LinePair, Mount, Reducer
 TOOTH_RANGE = (60, 320)
 """Flexspline teeth looked at: reductions 30 to 160, as catalogues have them."""
 
+CATALOGUE_REDUCTIONS = (30, 50, 80, 100, 120, 160)
+"""Reductions z1/2 in the catalogues of strain wave gears (CSF, CSG, SHF and their like); 99 or 101 are none."""
+
 ENCODER_ORDERS = (64, 128, 256, 512)
 """Periods per revolution of common encoders, whose interpolation errors show as lines, with sidebands beside."""
 
@@ -49,6 +52,16 @@ class ToothPair(NamedTuple):
     def lines(self, k: float = 1.0) -> LinePair:
         """Orders [cycles per output revolution] of the k-th pair of lines; k = 1/2 are the motor's, in either mount."""
         return LinePair(k * self.flexspline, k * self.circular_spline)
+
+    @property
+    def is_in_catalogue(self) -> bool:
+        """Whether catalogues list the reduction."""
+        return 0.5 * self.flexspline in CATALOGUE_REDUCTIONS
+
+    def doubled(self) -> tuple["ToothPair", ...]:
+        """Return the pairs, in either mount, whose motor turns once for a cycle of one of the two lines."""
+        teeth = sorted({2.0 * line + shift for line in self for shift in (-WAVE_GENERATOR_LOBES, 0)})
+        return tuple(ToothPair(z, z + WAVE_GENERATOR_LOBES) for z in teeth if z <= TOOTH_RANGE[1])
 
     @property
     def is_beside_encoder(self) -> bool:

@@ -15,6 +15,7 @@ from hd_monitor.acquisition.record import JointSamples
 from hd_monitor.diagnosis.limitations import describe_limitation
 from hd_monitor.diagnosis.verdict import Component
 from hd_monitor.identification.sensorless.identifier import SensorlessIdentifier
+from hd_monitor.limitation import LimitationCode
 
 
 def swinging(cs=0.3, fs=0.0, noise=0.1, seconds=60.0, rate=100.0, seed=1, teeth=(160, 162)):
@@ -248,3 +249,15 @@ def test_teeth_near_the_right_ones_name_no_part(given):
     assert "200/202 teeth" in first
     right = settings_of(reducer__flexspline_teeth=200, reducer__circular_spline_teeth=202)
     assert identify(samples, right).estimate().blockers == ()
+
+
+def test_a_real_line_of_few_teeth_is_not_taken_for_the_motors():
+    whole = swinging(0.3, 0.0, teeth=(100, 102), rate=200.0)
+    whole.effort[:] += 0.2 * np.cos(200 * whole.angle)
+    parameters = settings_of(reducer__flexspline_teeth=100, reducer__circular_spline_teeth=102)
+    identifier = identify(whole, parameters)
+    assert named(identifier, parameters) is Component.CIRCULAR_SPLINE
+    whole.effort[:] += 0.2 * np.cos(202 * whole.angle)  # a line that 100/102 teeth cannot make
+    (reason,) = identify(whole, parameters).estimate().blockers
+    assert reason.code is LimitationCode.MOTOR_LINE
+    assert reason.values["other"] == "200/202"

@@ -11,11 +11,20 @@ from tests.hd_monitor.identification.sensorless.runs import (
 from hd_monitor.diagnosis.limitations import describe_limitation
 from hd_monitor.diagnosis.status import status_of
 from hd_monitor.diagnosis.verdict import Component
+from hd_monitor.limitation import LimitationCode
 from hd_monitor.monitor import Monitor
+from hd_monitor.offline.identify_teeth import rank_tooth_pairs
 from hd_monitor.sources import Quantity
 
 LONG, SHORT = "ur-20_02_12-50sec_12harm", "ur-20_02_06-20sec_10harm"
 J1_ONLY, J5_ONLY = "ur-20_01_22-joint_1", "ur-20_01_22-joint_5"
+J2_ONLY, LOADED, MIDDLE = "ur-20_01_22-joint_2", "ur-20_01_31-load", "ur-20_02_10-30sec_12harm"
+EVERY = [
+    (J1_ONLY, 1),
+    (J2_ONLY, 2),
+    (J5_ONLY, 5),
+    *((file, joint) for file in (LOADED, SHORT, MIDDLE, LONG) for joint in range(1, 7)),
+]
 MOVING = [(J1_ONLY, 1), (J5_ONLY, 5), *((file, joint) for file in (SHORT, LONG) for joint in range(1, 7))]
 UR10E = {
     "reducer__flexspline_teeth": 200,
@@ -95,3 +104,43 @@ def test_wrong_teeth_near_by_are_noticed_on_the_real_arm(ur10e):
     other = UR10E | {"reducer__flexspline_teeth": 190, "reducer__circular_spline_teeth": 192}
     blockers = identify(ur10e(LONG, 2), settings_of(**other)).estimate().blockers
     assert any("stronger line at about 200" in describe_limitation(reason) for reason in blockers)
+
+
+@pytest.mark.shared_data
+@pytest.mark.parametrize("source", ["joint_effort", "joint_velocity"])
+def test_the_right_teeth_are_never_questioned_on_the_real_arm(ur10e, source):
+    parameters = settings_of(**UR10E, input__source=source)
+    for file, joint in EVERY:
+        blockers = identify(ur10e(file, joint), parameters).estimate().blockers
+        assert not {reason.code for reason in blockers} & {
+            LimitationCode.TEETH_CONTRADICTED,
+            LimitationCode.TEETH_AMBIGUOUS,
+            LimitationCode.MOTOR_LINE,
+        }
+
+
+@pytest.mark.shared_data
+@pytest.mark.parametrize("file", [J2_ONLY, LOADED, MIDDLE])
+def test_joint_2_is_named_where_travel_is_short(ur10e, file):
+    assert named(identify(ur10e(file, 2), settings_of(**UR10E)), settings_of(**UR10E)) is Component.CIRCULAR_SPLINE
+
+
+@pytest.mark.shared_data
+@pytest.mark.parametrize("source", ["joint_effort", "joint_velocity"])
+@pytest.mark.parametrize("teeth", [198, 202])
+def test_teeth_that_share_a_line_with_the_right_ones_name_nothing(ur10e, source, teeth):
+    wrong = UR10E | {"reducer__flexspline_teeth": teeth, "reducer__circular_spline_teeth": teeth + 2}
+    parameters = settings_of(**wrong, input__source=source)
+    names = {named(identify(ur10e(file, joint), parameters), parameters) for file, joint in EVERY}
+    assert names == {Component.UNDETERMINED}
+
+
+@pytest.mark.shared_data
+@pytest.mark.parametrize("mount", ["circular_spline_fixed", "flexspline_fixed"])
+def test_a_line_once_per_motor_revolution_is_not_a_splines(franka, mount):
+    parameters = settings_of(reducer__flexspline_teeth=120, reducer__circular_spline_teeth=122, reducer__mount=mount)
+    identifier = identify(franka(1), parameters)
+    assert named(identifier, parameters) is Component.UNDETERMINED
+    (reason,) = map(describe_limitation, identifier.estimate().blockers)
+    assert "120 cycles per output revolution is once per motor revolution of 240/242 teeth" in reason
+    assert "is once per motor revolution of 240/242" in rank_tooth_pairs(franka(1)).statement
