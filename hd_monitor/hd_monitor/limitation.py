@@ -56,6 +56,21 @@ class LimitationCode(StrEnum):
     STRONGER_LINE_BESIDE = "stronger_line_beside"
 
 
+NOT_YET = frozenset(
+    {
+        LimitationCode.TRAVEL_TOO_SHORT,
+        LimitationCode.MOTION_TOO_SHORT,
+        LimitationCode.LINES_TOO_WEAK,
+        LimitationCode.NEAR_RESONANCE,
+        LimitationCode.ONE_STROKE,
+        LimitationCode.NO_LINE_FOUND,
+        LimitationCode.LINES_TOO_SIMILAR,
+        LimitationCode.DIRECTIONS_DISAGREE,
+    }
+)
+"""Codes that more motion, or another one, lifts; all others contradict parameters or model and need a person."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Limitation:
     """One reason to doubt a result, or not to name a part on it.
@@ -72,6 +87,11 @@ class Limitation:
     code: LimitationCode
     blocks: bool
     values: Mapping[str, float | str] = field(default_factory=dict)
+
+    @property
+    def is_not_yet(self) -> bool:
+        """Whether it only says that something has not been seen yet."""
+        return self.code in NOT_YET
 
 
 def doubt(code: LimitationCode, **values: float | str) -> Limitation:

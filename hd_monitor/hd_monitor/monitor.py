@@ -142,19 +142,15 @@ class Monitor:
             verdict = lost(losses, self._recorder.last_fault, self._presence.timeout)
         else:
             found = self._evidence.identification
-            missing = (
-                ""
-                if found is not None
-                else not_enough(
-                    assembled,
-                    self.settings,
-                    self._presence.absent,
-                    speed=self._evidence.speed(assembled),
-                    rate=self._recorder.rate,
-                    fault=self._recorder.last_fault,
-                )
+            otherwise = not_enough(
+                assembled,
+                self.settings,
+                self._presence.absent,
+                speed=self._evidence.speed(assembled),
+                rate=self._recorder.rate,
+                fault=self._recorder.last_fault,
             )
-            verdict = self._judge.judge(found, missing)
+            verdict = self._judge.judge(found, otherwise)
             if found is not None and self._recorder.torque_source == "assumed":
                 verdict = with_assumed_torque(verdict, self.settings.load.torque)
         self.latest = self._pack(period.end, verdict, assembled)

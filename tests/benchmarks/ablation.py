@@ -26,6 +26,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from tests.simulated.cases import Case, random_case, simulate
 
 from hd_monitor.acquisition.record import Record
+from hd_monitor.diagnosis.absence import WAITING
 from hd_monitor.diagnosis.judge import Judge
 from hd_monitor.diagnosis.verdict import Component
 from hd_monitor.identification.checks.residual import LineResidual, Overdispersion
@@ -119,7 +120,7 @@ class Outcome:
             identifier.add(record)
         found = identifier.finish()
         self.seconds += time.process_time() - start
-        named = Judge(settings).judge(found, "").component
+        named = Judge(settings).judge(found, WAITING).component
         right = "right" if named is case.truth else "wrong"
         self.verdicts["undetermined" if named is Component.UNDETERMINED else right] += 1
         if found is not None and not found.relative:

@@ -8,7 +8,7 @@ from tests.hd_monitor.monitored import BLOCK, EPOCH, SETTINGS, UNITS, Recording,
 
 from hd_monitor.assessment import Assessment
 from hd_monitor.diagnosis.status import Status, status_of
-from hd_monitor.diagnosis.verdict import Component, Level
+from hd_monitor.diagnosis.verdict import Component, FaultCode, Level
 from hd_monitor.identification.identifier import LONGEST_PERIOD, LONGEST_SEGMENT
 from hd_monitor.monitor import Monitor
 from hd_monitor.settings import JointSettings
@@ -97,7 +97,7 @@ def test_nothing_is_said_before_both_inputs_came(recording: Recording) -> None:
     assert monitor.latest is None
 
 
-def test_a_standing_joint_is_undetermined_and_says_why() -> None:
+def test_a_standing_joint_has_no_verdict_yet_and_says_why() -> None:
     stamps = EPOCH + np.arange(5000, dtype=np.int64) * 1_000_000
     monitor = Monitor(SETTINGS)
     still = np.zeros(500)
@@ -105,8 +105,9 @@ def test_a_standing_joint_is_undetermined_and_says_why() -> None:
     monitor.add(Quantity.VIBRATION, stamps, np.random.default_rng(1).normal(0.0, 0.1, 5000))
     monitor.finish()
     verdict = latest(monitor).verdict
-    assert (verdict.component, verdict.level) == (Component.UNDETERMINED, Level.WARN)
-    assert "turn" in verdict.reason
+    assert (verdict.component, verdict.level) == (Component.UNDETERMINED, Level.OK)
+    assert verdict.fault_code is FaultCode.WAITING
+    assert verdict.reason.startswith("No verdict yet: the joint has not turned enough")
 
 
 def test_a_recording_shorter_than_a_period_is_assessed(recording: Recording) -> None:

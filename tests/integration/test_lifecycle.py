@@ -102,7 +102,7 @@ def test_reset_forgets_the_evidence(bench: Bench, peer: Any) -> None:
     response = trigger(peer, "reset")
     assert (response.success, response.message) == (True, "done for joint")
     bench.forget()
-    bench.until_status(lambda s: s.component == "undetermined", "a verdict without evidence")
+    bench.until_status(lambda s: s.fault_code == "HD_WAITING", "no verdict yet")
     bench.until_status(settled, "a new verdict")
 
 

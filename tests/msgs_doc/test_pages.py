@@ -1,14 +1,20 @@
 """The pages of msgs_doc say what the code does."""
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from hd_monitor import contract
+from hd_monitor.assessment import Assessment
 from hd_monitor.diagnosis.status import status_of
 from hd_monitor.diagnosis.verdict import Component, FaultCode
+from hd_monitor.identification.result import Identification
+from hd_monitor.model import ParametricModel, StiffnessSeries
 from hd_monitor.monitor import Monitor
+from hd_monitor.reducer import LinePair
 from hd_monitor.settings import JointSettings, set_aside_foreign, split_joints
 from hd_monitor.sources import INPUT_SOURCES, JOINT_STATES, LOAD_SOURCES
 
@@ -24,14 +30,41 @@ def documented_keys() -> list[str]:
     return [key for cell in cells for key in re.findall(r"`([^`]+)`", cell)]
 
 
+def everything_known() -> Assessment:
+    unstable = ParametricModel(flexspline=StiffnessSeries((0.3,), (0.0,)))
+    found = Identification(
+        circular_spline=np.zeros(1, dtype=complex),
+        flexspline=np.zeros(1, dtype=complex),
+        index=LinePair(0.01, 0.3),
+        index_std=LinePair(0.001, 0.001),
+        transmission_error=LinePair(0.1, 0.2),
+        transmission_error_std=LinePair(0.01, 0.01),
+        signal_to_noise=20.0,
+        misfit=1.0,
+        natural_frequency=55.0,
+        damping_ratio=0.023,
+        model=unstable,
+    )
+    nothing = Monitor(JointSettings.from_mapping()).silence(0)
+    quality = replace(nothing.quality, rate=1000.0)
+    extra = (("internal errors", "1"),)
+    return replace(nothing, identification=found, quality=quality, speed=850.0, rms=1.0, extra=extra)
+
+
 def test_every_key_of_a_status_is_documented_in_its_order() -> None:
-    settings = JointSettings.from_mapping()
-    status = status_of(Monitor(settings).silence(0), "joint")
-    keys = [key for key, _ in status.values]
-    # Left out of a status as long as there is nothing to say
-    documented = [key for key in documented_keys() if key != "internal errors" and "transmission error" not in key]
-    assert set(keys) == set(documented)
-    assert [key for key in keys if "std" not in key] == [key for key in documented if "std" not in key]
+    keys = [key for key, _ in status_of(everything_known(), "joint").values]
+    assert set(keys) == set(documented_keys())
+    assert [key for key in keys if "std" not in key] == [key for key in documented_keys() if "std" not in key]
+
+
+def test_a_key_that_holds_a_number_is_left_out_while_it_is_unknown() -> None:
+    known = dict(status_of(everything_known(), "joint").values)
+    unknown = dict(status_of(Monitor(JointSettings.from_mapping()).silence(0), "joint").values)
+    numbers = {key for key, value in known.items() if value.replace(".", "", 1).isdigit()}
+    left_out = {"speed (rpm)", "unstable from (rpm)", "flexspline index (%)", "sampling rate (Hz)"}
+    assert left_out <= numbers - set(unknown)
+    assert all(float(value) >= 0.0 for key, value in unknown.items() if key in numbers)
+    assert set(known) - numbers <= set(unknown)
 
 
 @pytest.mark.parametrize("code", list(FaultCode))

@@ -17,6 +17,7 @@ import numpy as np
 from scipy import stats
 
 from hd_monitor.acquisition.record import JointSamples
+from hd_monitor.diagnosis.absence import WAITING
 from hd_monitor.diagnosis.judge import Judge
 from hd_monitor.diagnosis.verdict import Component
 from hd_monitor.identification.result import Identification
@@ -42,7 +43,7 @@ def verdict(found: Identification | None, settings: JointSettings) -> Component:
     """Component that the monitor would show if this evidence stays."""
     judge = Judge(settings)
     for _ in range(settings.diagnosis.confirm_window):
-        shown = judge.judge(found, "nothing yet")
+        shown = judge.judge(found, WAITING)
     return shown.component
 
 

@@ -22,6 +22,7 @@ from typing import Any
 
 import numpy as np
 
+from hd_monitor.diagnosis.absence import WAITING
 from hd_monitor.diagnosis.judge import Judge
 from hd_monitor.diagnosis.verdict import Component
 from hd_monitor.identification.identifier import Identifier
@@ -146,7 +147,7 @@ def _outcome(
     number: int, shift: int, truth: Component, judge: Judge, seen: Sequence[Identification | None], seconds: float
 ) -> Outcome:
     """Sum up all results of an identification, the last one the result on everything."""
-    named = [judge.judge(result, "nothing yet").component for result in seen]
+    named = [judge.judge(result, WAITING).component for result in seen]
     last = seen[-1]
     return Outcome(
         number=number,

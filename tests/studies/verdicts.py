@@ -26,6 +26,7 @@ from pathlib import Path
 import numpy as np
 
 from hd_monitor.acquisition.record import Record
+from hd_monitor.diagnosis.absence import WAITING
 from hd_monitor.diagnosis.judge import Judge
 from hd_monitor.diagnosis.verdict import Component
 from hd_monitor.identification.identifier import Identifier
@@ -122,7 +123,7 @@ def judge_case(number: int, seed: int) -> Outcome:
     for record in records:
         identifier.add(record)
     result = identifier.finish()
-    verdict = Judge(settings).judge(result, "no evidence")
+    verdict = Judge(settings).judge(result, WAITING)
     unknown = LinePair(math.nan, math.nan)
     return Outcome(
         number=number,

@@ -85,9 +85,11 @@ def internal_error(error: Exception) -> Verdict:
     )
 
 
-WAITING = Verdict.naming(Component.UNDETERMINED, Level.WARN, "Waiting for the first data: no verdict is possible yet")
-NO_SIMULATED_TIME = replace(
-    WAITING, reason="use_sim_time is set, but no simulated time has arrived yet: does anything publish /clock?"
+WAITING = Verdict.waiting("nothing has been received so far")
+NO_SIMULATED_TIME = Verdict.naming(
+    Component.UNDETERMINED,
+    Level.WARN,
+    "use_sim_time is set, but no simulated time has arrived yet: does anything publish /clock?",
 )
 
 
@@ -99,23 +101,28 @@ def not_enough(
     speed: float,
     rate: float,
     fault: str,
-) -> str:
+) -> Verdict:
     """Say why there is no evidence yet, by the last period, its wave-generator speed [rpm] and sampling rate [Hz]."""
+    turns = speed >= settings.analysis.minimum_speed
     if absent:
-        return f"No {_listed(absent)} so far"
-    if not settings.sensorless and not period.records:
+        reason = f"no {_listed(absent)} so far"
+    elif not settings.sensorless and not period.records:
         known = "motion and torque" if Quantity.TORQUE in settings.sources else "motion"
-        return f"No vibration with known {known} in the last period" + (f": {fault}" if fault else "")
-    if not settings.sensorless and Quantity.VIBRATION not in period.usable:
-        return f"No usable vibration sample in the last period: {fault}"
-    if not speed >= settings.analysis.minimum_speed:
-        return "The joint has not turned enough yet: the lines appear only in motion"
-    if not settings.sensorless and settings.reducer.line_frequencies(speed).circular_spline > 0.5 * rate:
-        return (
+        reason = f"no vibration with known {known} in the last period" + (f": {fault}" if fault else "")
+    elif not settings.sensorless and Quantity.VIBRATION not in period.usable:
+        reason = f"no usable vibration sample in the last period: {fault}"
+    elif not turns:
+        reason = "the joint has not turned enough: the lines appear only in motion"
+    elif not settings.sensorless and settings.reducer.line_frequencies(speed).circular_spline > 0.5 * rate:
+        return Verdict.naming(
+            Component.UNDETERMINED,
+            Level.WARN,
             f"At {speed:.0f} rpm all lines lie above half the sampling rate of {rate:.0f} Hz: check that positions "
-            "are in rad on the output side, or sample faster"
+            "are in rad on the output side, or sample faster",
         )
-    return "Not enough motion seen yet: keep the joint turning"
+    else:
+        reason = "too little motion: keep the joint turning"
+    return Verdict.waiting(reason)
 
 
 def with_assumed_torque(verdict: Verdict, torque: float) -> Verdict:

@@ -8,7 +8,7 @@ from ..reducer import Mount
 from ..settings import DiagnosisSettings, JointSettings
 from .limitations import describe_limitation
 from .probability import Probabilities, component_probabilities, find_cause, name_component, severity
-from .verdict import Cause, Component, Level, Verdict
+from .verdict import Cause, Component, FaultCode, Level, Verdict
 from .wording import (
     describe_component,
     describe_doubtful_limit,
@@ -30,7 +30,7 @@ class Judge:
     Notes
     -----
     A verdict about the present evidence becomes the shown one when `confirm_count` of the last `confirm_window`
-    verdicts agree on component and level; until the first agreement the verdict is undetermined. Wording and figures
+    verdicts agree on component and level; until the first agreement there is no verdict yet. Wording and figures
     follow the evidence at once. A latched verdict stays until a worse one or :meth:`reset_latch`.
     """
 
@@ -40,7 +40,7 @@ class Judge:
         fixed = settings.reducer.mount is Mount.CIRCULAR_SPLINE_FIXED
         self._motor_side = Component.CIRCULAR_SPLINE if fixed else Component.FLEXSPLINE
         self._recent: deque[tuple[Component, Level]] = deque(maxlen=self._limits.confirm_window)
-        self._shown: Verdict | None = None
+        self._shown = Verdict.waiting("nothing has been judged so far")
         self._latched: Verdict | None = None
 
     def change_limits(self, limits: DiagnosisSettings) -> None:
@@ -54,29 +54,26 @@ class Judge:
         """Release a latched verdict."""
         self._latched = None
 
-    def judge(self, evidence: Identification | None, missing: str) -> Verdict:
+    def judge(self, evidence: Identification | None, otherwise: Verdict) -> Verdict:
         """Judge the evidence at one time.
 
         Parameters
         ----------
         evidence : Identification or None
-        missing : str
-            What is still missing, in words, for the case that there is no evidence yet.
+        otherwise : Verdict
+            For the case that there is no evidence yet.
         """
-        now = self._undetermined(missing) if evidence is None else self._assess(evidence)
-        self._recent.append((now.component, now.level))
+        now = otherwise if evidence is None else self._assess(evidence)
+        self._recent.append(_kind(now))
         shown = self._shown
-        count = self._recent.count((now.component, now.level))
-        same = shown is not None and (shown.component, shown.level) == (now.component, now.level)
-        if same or count >= self._limits.confirm_count:
+        count = self._recent.count(_kind(now))
+        if _kind(shown) == _kind(now) or count >= self._limits.confirm_count:
             shown = now
-        elif shown is None:
-            shown = self._undetermined(f"{now.reason} (to be confirmed: {count} of {self._limits.confirm_count})")
+        elif shown.fault_code is FaultCode.WAITING:
+            shown = Verdict.waiting(f"{now.reason} (to be confirmed: {count} of {self._limits.confirm_count})")
         else:  # held until the new verdict is confirmed; the sentence still describes the present evidence
-            held = replace(
-                shown, reason=f"{now.reason} (held: {count} of {self._limits.confirm_count} verdicts say so)"
-            )
-            return self._latch(held)
+            held = f"{now.sentence} (held: {count} of {self._limits.confirm_count} verdicts say so)"
+            return self._latch(replace(shown, reason=held))
         self._shown = shown
         return self._latch(shown)
 
@@ -94,12 +91,13 @@ class Judge:
     def _assess(self, evidence: Identification) -> Verdict:
         if evidence.blockers:
             # Blocked indexes carry no level either
-            return self._undetermined("; ".join(map(describe_limitation, evidence.blockers)))
+            reason = "; ".join(map(describe_limitation, evidence.blockers))
+            wait = all(blocker.is_not_yet for blocker in evidence.blockers)
+            return Verdict.waiting(reason) if wait else self._undetermined(reason)
         if evidence.relative:
             return self._assess_relative(evidence)
         limits = self._limits
-        held = self._shown.component if self._shown is not None else Component.UNDETERMINED
-        alarmed = held not in (Component.NONE, Component.UNDETERMINED)
+        alarmed = self._shown.component not in (Component.NONE, Component.UNDETERMINED)
         limit = limits.warn_index * (1.0 - limits.hysteresis) if alarmed else limits.warn_index
         component = name_component(severity(evidence, limits), limit, limits.both_ratio)
         odds = component_probabilities(evidence, limits, limit)
@@ -108,7 +106,7 @@ class Judge:
         sharp = sharp and max(error_std) < _SHARP * limits.warn_transmission_error
         sound = component is Component.NONE
         if not sharp and (odds.none if sound else 1.0 - odds.none) < limits.confidence:
-            return self._undetermined(describe_doubtful_limit(evidence, limits, limit))
+            return Verdict.waiting(describe_doubtful_limit(evidence, limits, limit))
         if sound:
             return self._named(component, Level.OK, evidence, Cause.NONE)
         level = self._magnitude(evidence)
@@ -137,7 +135,7 @@ class Judge:
     def _magnitude(self, evidence: Identification) -> Level:
         """Level that the worst reading calls for, whichever spline it belongs to."""
         limits = self._limits
-        shown = self._shown.level if self._shown is not None else Level.OK
+        shown = self._shown.level
         easier = 1.0 - limits.hysteresis
         readings = [(max(evidence.index), limits.warn_index, limits.error_index)]
         if evidence.transmission_error is not None:
@@ -155,3 +153,8 @@ class Judge:
     @staticmethod
     def _undetermined(reason: str, level: Level = Level.WARN) -> Verdict:
         return Verdict.naming(Component.UNDETERMINED, max(level, Level.WARN), reason)
+
+
+def _kind(verdict: Verdict) -> tuple[Component, Level]:
+    """Return what must agree for a confirmation: that no part can be named needs none beside that none can yet."""
+    return verdict.component, Level.WARN if verdict.fault_code is FaultCode.WAITING else verdict.level

@@ -3,23 +3,11 @@
 import math
 from dataclasses import dataclass
 
-import numpy as np
-
 from ..assessment import Assessment
 from ..identification.result import Identification
-from ..reducer import LinePair
 
-_NO_LINES = np.empty(0, dtype=np.complex128)
-_UNKNOWN = LinePair(math.nan, math.nan)
-_NOTHING = Identification(
-    circular_spline=_NO_LINES,
-    flexspline=_NO_LINES,
-    index=_UNKNOWN,
-    index_std=_UNKNOWN,
-    natural_frequency_std=math.nan,
-    load_fluctuation=math.nan,
-)
-"""Stands in as long as nothing is identified: every number unknown."""
+_NOTHING = Identification.none((), relative=False)
+"""Stands in as long as nothing is identified."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -32,7 +20,7 @@ class Status:
         0 OK, 1 WARN, 2 ERROR.
     message, hardware_id : str
     values : tuple of (str, str)
-        Keys with their units, and values: one plain number or word each.
+        Keys with their units, and values: one plain number or word each; unknown numbers are left out.
     """
 
     level: int
@@ -51,9 +39,8 @@ def status_of(assessment: Assessment, joint: str) -> Status:
     found = assessment.identification or _NOTHING
     kind = "unknown" if found is _NOTHING else "relative" if found.relative else "absolute"
     limits, needed = assessment.settings.diagnosis, assessment.settings.reducer.travel_to_separate(1)
-    critical_speed = found.critical_speed
     samples, *faults = quality.counts()
-    values = [
+    values: list[tuple[str, str | None]] = [
         ("joint", joint),
         ("component", verdict.component.value),
         ("cause", verdict.cause.value),
@@ -80,11 +67,11 @@ def status_of(assessment: Assessment, joint: str) -> Status:
         ("natural frequency std (Hz)", _number(found.natural_frequency_std, 2)),
         ("damping ratio", _number(found.damping_ratio, 4)),
         ("load fluctuation (N*m)", _number(found.load_fluctuation)),
-        ("unstable from (rpm)", "never" if math.isinf(critical_speed) else _number(critical_speed, 0)),
+        ("unstable from (rpm)", _number(found.critical_speed, 0)),
         ("torque source", assessment.torque_source),
         samples,
         ("samples used", str(found.samples)),
-        ("sampling rate (Hz)", _number(quality.rate, 2)),
+        ("sampling rate (Hz)", _number(quality.rate or math.nan, 2)),
         *faults,
         ("last complaint", quality.last_fault or "none"),
         *assessment.extra,
@@ -93,11 +80,11 @@ def status_of(assessment: Assessment, joint: str) -> Status:
         level=int(verdict.level),
         message=verdict.reason,
         hardware_id=assessment.settings.serial,
-        values=tuple(values),
+        values=tuple((key, value) for key, value in values if value is not None),
     )
 
 
-def _errors(found: Identification) -> list[tuple[str, str]]:
+def _errors(found: Identification) -> list[tuple[str, str | None]]:
     """Transmission errors, where they are estimated."""
     error, std = found.transmission_error, found.transmission_error_std
     if error is None or std is None:
@@ -112,5 +99,6 @@ def _errors(found: Identification) -> list[tuple[str, str]]:
     ]
 
 
-def _number(value: float, digits: int = 3) -> str:
-    return "unknown" if math.isnan(value) else f"{value:.{digits}f}"
+def _number(value: float, digits: int = 3) -> str | None:
+    """Write a number; None leaves an unknown one out, so that a key never holds a word in its place."""
+    return f"{value:.{digits}f}" if math.isfinite(value) else None

@@ -32,11 +32,14 @@ class FaultCode(StrEnum):
     FLEXSPLINE = "HD_FLEXSPLINE"
     CIRCULAR_SPLINE = "HD_CIRCULAR_SPLINE"
     BOTH_SPLINES = "HD_BOTH_SPLINES"
+    WAITING = "HD_WAITING"
     UNDETERMINED = "HD_UNDETERMINED"
     INPUT_LOST = "HD_INPUT_LOST"
     INPUT_INVALID = "HD_INPUT_INVALID"
     INTERNAL_ERROR = "HD_INTERNAL_ERROR"
 
+
+_NO_VERDICT_YET = "No verdict yet: "
 
 _FAULT_CODES = {
     Component.NONE: FaultCode.OK,
@@ -80,3 +83,19 @@ class Verdict:
     def naming(cls, component: Component, level: Level, reason: str, cause: Cause = Cause.NONE) -> Self:
         """Return the verdict whose fault code says no more than its component."""
         return cls(component=component, level=level, fault_code=_FAULT_CODES[component], reason=reason, cause=cause)
+
+    @classmethod
+    def waiting(cls, reason: str) -> Self:
+        """Return that there is no verdict yet, which needs nobody; the reason says what is awaited."""
+        return cls(
+            component=Component.UNDETERMINED,
+            level=Level.OK,
+            fault_code=FaultCode.WAITING,
+            reason=f"{_NO_VERDICT_YET}{reason[:1].lower()}{reason[1:]}",
+        )
+
+    @property
+    def sentence(self) -> str:
+        """The reason without the words that say that there is no verdict yet."""
+        reason = self.reason.removeprefix(_NO_VERDICT_YET)
+        return reason[:1].upper() + reason[1:]

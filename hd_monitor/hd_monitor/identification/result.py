@@ -101,12 +101,14 @@ class Identification:
 
     @classmethod
     def none(cls, limitations: tuple[Limitation, ...], *, relative: bool) -> Self:
-        """Return the result where nothing could be identified, with the reasons."""
+        """Return the result where nothing could be identified, every number unknown, with the reasons."""
         return cls(
             circular_spline=np.zeros(0, dtype=np.complex128),
             flexspline=np.zeros(0, dtype=np.complex128),
-            index=LinePair(0.0, 0.0),
-            index_std=LinePair(math.inf, math.inf),
+            index=LinePair(math.nan, math.nan),
+            index_std=LinePair(math.nan, math.nan),
+            natural_frequency_std=math.nan,
+            damping_ratio_std=math.nan,
             relative=relative,
             load_fluctuation=math.nan,
             limitations=limitations,

@@ -51,7 +51,7 @@ def summarise(result: JointResult) -> str:
         f"{result.plan.joint}: {Level(verdict.level).name}, {verdict.component.value} ({verdict.fault_code.value})",
         f"  {verdict.reason}",
     ]
-    if found is not None:
+    if found is not None and math.isfinite(found.index_std.flexspline):
         kind = "relative index" if found.relative else "index"
         index, std, limits = found.index, found.index_std, last.settings.diagnosis
         lines += [

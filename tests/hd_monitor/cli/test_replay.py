@@ -236,7 +236,7 @@ def test_a_period_longer_than_the_recording_is_named_and_no_input_called_lost(
     recording: Path, tmp_path: Path, source: list[str]
 ) -> None:
     (joint,) = result_of(recording, tmp_path, "-p", "analysis.period:=60.0", *source)["joints"]
-    assert joint["verdict"]["fault_code"] == "HD_UNDETERMINED"
+    assert joint["verdict"]["fault_code"] == "HD_WAITING"
     assert "set a shorter analysis.period" in " ".join(joint["notes"])
     (joint,) = result_of(recording, tmp_path, *source)["joints"]
     assert "analysis.period" not in " ".join(joint["notes"])

@@ -5,10 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from hd_monitor.diagnosis.absence import WAITING
 from hd_monitor.diagnosis.judge import Judge
 from hd_monitor.diagnosis.verdict import Component, FaultCode, Level, Verdict
 from hd_monitor.identification.result import Identification
-from hd_monitor.limitation import LimitationCode, blocker, doubt
+from hd_monitor.limitation import Limitation, LimitationCode, blocker, doubt
 from hd_monitor.reducer import LinePair
 from hd_monitor.settings import JointSettings
 
@@ -25,9 +26,9 @@ def evidence(cs: float, fs: float, std: float = 0.001, **changes: object) -> Ide
     return replace(found, **changes)  # type: ignore[arg-type]
 
 
-def settled(judge: Judge, found: Identification | None, missing: str = "nothing yet") -> Verdict:
+def settled(judge: Judge, found: Identification | None, otherwise: Verdict = WAITING) -> Verdict:
     for _ in range(3):
-        verdict = judge.judge(found, missing)
+        verdict = judge.judge(found, otherwise)
     return verdict
 
 
@@ -59,24 +60,48 @@ def test_the_line_that_the_motor_shares_is_pointed_out(mount: str, shared: Ident
     assert "motor ripple" not in settled(Judge(settings), own).reason
 
 
-def test_no_evidence_is_undetermined_and_says_what_is_missing() -> None:
-    verdict = settled(judge_of(), None, "The joint has not turned")
+def test_no_evidence_is_no_verdict_yet_and_says_what_is_missing() -> None:
+    verdict = settled(judge_of(), None, Verdict.waiting("The joint has not turned"))
+    assert (verdict.component, verdict.level) == (Component.UNDETERMINED, Level.OK)
+    assert verdict.fault_code is FaultCode.WAITING
+    assert verdict.reason == "No verdict yet: the joint has not turned"
+
+
+SHORT = blocker(LimitationCode.TRAVEL_TOO_SHORT, travel_deg=20.0, needed_deg=90.0, missing_deg=70.0)
+WRONG_TORQUE = blocker(LimitationCode.TORQUE_TOO_SMALL)
+
+
+def test_too_little_motion_is_no_verdict_yet() -> None:
+    verdict = settled(judge_of(), evidence(0.01, 0.10, limitations=(SHORT,)))
+    assert (verdict.component, verdict.level) == (Component.UNDETERMINED, Level.OK)
+    assert verdict.fault_code is FaultCode.WAITING
+    assert verdict.reason.startswith("No verdict yet: only 20°")
+
+
+@pytest.mark.parametrize("limitations", [(WRONG_TORQUE,), (WRONG_TORQUE, SHORT)])
+def test_a_contradiction_forbids_a_name_and_needs_a_person(limitations: tuple[Limitation, ...]) -> None:
+    verdict = settled(judge_of(), evidence(0.01, 0.10, limitations=limitations))
     assert (verdict.component, verdict.level) == (Component.UNDETERMINED, Level.WARN)
     assert verdict.fault_code is FaultCode.UNDETERMINED
-    assert verdict.reason == "The joint has not turned"
+    assert verdict.reason.startswith("The vibration contradicts the torque given")
 
 
-def test_blockers_forbid_a_name() -> None:
-    verdict = settled(
-        judge_of(),
-        evidence(
-            0.01,
-            0.10,
-            limitations=(blocker(LimitationCode.TRAVEL_TOO_SHORT, travel_deg=20.0, needed_deg=90.0, missing_deg=70.0),),
-        ),
-    )
-    assert (verdict.component, verdict.level) == (Component.UNDETERMINED, Level.WARN)
-    assert "20°" in verdict.reason
+def test_a_first_verdict_awaits_its_confirmation() -> None:
+    judge = judge_of(confirm_count=3, confirm_window=5)
+    for count in (1, 2):
+        verdict = judge.judge(evidence(0.01, 0.10), WAITING)
+        assert (verdict.fault_code, verdict.level) == (FaultCode.WAITING, Level.OK)
+        assert verdict.reason.startswith("No verdict yet: the flexspline is defective")
+        assert verdict.reason.endswith(f"(to be confirmed: {count} of 3)")
+    assert judge.judge(evidence(0.01, 0.10), WAITING).fault_code is FaultCode.FLEXSPLINE
+
+
+def test_a_name_is_held_over_a_single_look_that_lacks_motion() -> None:
+    judge = judge_of()
+    settled(judge, evidence(0.01, 0.10))
+    verdict = judge.judge(evidence(0.01, 0.10, limitations=(SHORT,)), WAITING)
+    assert verdict.fault_code is FaultCode.FLEXSPLINE
+    assert verdict.reason.startswith("Only 20°")
 
 
 def test_indistinguishable_splines_are_not_named_but_the_defect_is_shown() -> None:
@@ -88,8 +113,8 @@ def test_indistinguishable_splines_are_not_named_but_the_defect_is_shown() -> No
 
 def test_a_vague_index_beside_the_limit_is_not_called_sound() -> None:
     verdict = settled(judge_of(), evidence(0.04, 0.01, 0.02))
-    assert verdict.component is Component.UNDETERMINED
-    assert verdict.level is Level.WARN
+    assert (verdict.fault_code, verdict.level) == (FaultCode.WAITING, Level.OK)
+    assert "as much motion would decide" in verdict.reason
 
 
 def test_doubts_are_reported_with_the_named_part() -> None:
@@ -110,18 +135,18 @@ def test_without_torque_the_larger_one_is_named_without_alarm() -> None:
 
 def test_a_change_needs_confirmation_and_a_single_outlier_changes_nothing() -> None:
     judge = judge_of(confirm_count=3, confirm_window=5)
-    first = [judge.judge(evidence(0.01, 0.02), "") for _ in range(3)]
+    first = [judge.judge(evidence(0.01, 0.02), WAITING) for _ in range(3)]
     assert [v.component for v in first] == [Component.UNDETERMINED, Component.UNDETERMINED, Component.NONE]
-    assert judge.judge(evidence(0.01, 0.10), "").component is Component.NONE
-    assert judge.judge(evidence(0.01, 0.02), "").component is Component.NONE
-    assert judge.judge(evidence(0.01, 0.10), "").component is Component.NONE
-    assert judge.judge(evidence(0.01, 0.10), "").component is Component.FLEXSPLINE  # 3 of the last 5
+    assert judge.judge(evidence(0.01, 0.10), WAITING).component is Component.NONE
+    assert judge.judge(evidence(0.01, 0.02), WAITING).component is Component.NONE
+    assert judge.judge(evidence(0.01, 0.10), WAITING).component is Component.NONE
+    assert judge.judge(evidence(0.01, 0.10), WAITING).component is Component.FLEXSPLINE  # 3 of the last 5
 
 
 def test_while_a_verdict_is_held_its_words_follow_the_evidence() -> None:
     judge = judge_of(confirm_count=2, confirm_window=3)
     settled(judge, evidence(0.01, 0.02))
-    held = judge.judge(evidence(0.01, 0.10), "")
+    held = judge.judge(evidence(0.01, 0.10), WAITING)
     assert held.component is Component.NONE
     assert "10.0 %" in held.reason
     assert "held" in held.reason

@@ -68,10 +68,10 @@ def inputs_of(vibration: list[bytes], motion: list[bytes]) -> dict[Quantity, lis
 def test_it_waits_before_it_complains() -> None:
     watch = watch_of(reducer__serial="A1")
     status = watch.status()
-    assert (status.level, status.hardware_id) == (1, "A1")
-    assert status.message.startswith("Waiting for the first data")
+    assert (status.level, status.hardware_id) == (0, "A1")
+    assert status.message.startswith("No verdict yet: nothing has been received")
     watch.check(START + SECOND)
-    assert watch.status().value("fault_code") == "HD_UNDETERMINED"
+    assert watch.status().value("fault_code") == "HD_WAITING"
     watch.check(START + 2 * SECOND)
     assert watch.status().value("fault_code") == "HD_INPUT_LOST"
     assert "because of the vibration" in watch.status().message
@@ -83,7 +83,7 @@ def test_good_data_is_assessed_and_the_transition_handed_out_once() -> None:
     watch.check(START + 2 * SECOND)
     assert [s.value("fault_code") for s in watch.take_transitions()] == ["HD_INPUT_LOST"]
     assert watch.feed(inputs_of(accelerations(100, 2.5), joint_states(100, 2.5)), START + 3 * SECOND)
-    assert [s.value("fault_code") for s in watch.take_transitions()] == ["HD_UNDETERMINED"]
+    assert [s.value("fault_code") for s in watch.take_transitions()] == ["HD_WAITING"]
     assert watch.take_transitions() == []
     assert float(watch.status().value("samples")) >= 500
 
@@ -101,7 +101,7 @@ def test_a_clock_that_is_set_back_restarts_the_silence() -> None:
     watch = watch_of()
     watch.check(START - 3 * SECOND)
     watch.check(START - 2 * SECOND)
-    assert watch.status().value("fault_code") == "HD_UNDETERMINED"
+    assert watch.status().value("fault_code") == "HD_WAITING"
     watch.check(START - SECOND)
     assert watch.status().value("fault_code") == "HD_INPUT_LOST"
 
@@ -110,6 +110,7 @@ def test_a_simulated_clock_that_has_not_begun_is_named() -> None:
     watch = JointWatch("elbow", JointSettings.from_mapping(), 0, explain, alone)
     watch.check(0)
     assert "/clock" in watch.status().message
+    assert watch.status().value("fault_code") == "HD_UNDETERMINED"
     watch.check(1000 * SECOND)  # its first time is not a thousand seconds of silence
     assert watch.status().value("fault_code") == "HD_UNDETERMINED"
 
@@ -130,7 +131,7 @@ def test_an_error_of_the_core_is_shown_and_the_joint_restarts(monkeypatch: pytes
     assert [s.value("fault_code") for s in watch.take_transitions()] == ["HD_INTERNAL_ERROR"]
     monkeypatch.setattr(Monitor, "advance", advance)
     assert watch.feed(inputs_of(accelerations(101, 2.5), joint_states(101, 2.5)), START + 3 * SECOND)
-    assert watch.status().value("fault_code") == "HD_UNDETERMINED"
+    assert watch.status().value("fault_code") == "HD_WAITING"
     assert watch.status().value("internal errors") == "1"
 
 

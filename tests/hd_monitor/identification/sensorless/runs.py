@@ -1,6 +1,7 @@
 """Runs of the sensorless identification and the verdicts that follow."""
 
 from hd_monitor.acquisition.record import JointSamples
+from hd_monitor.diagnosis.absence import WAITING
 from hd_monitor.diagnosis.judge import Judge
 from hd_monitor.identification.sensorless.identifier import SensorlessIdentifier
 from hd_monitor.settings import JointSettings
@@ -27,5 +28,5 @@ def identify(samples, parameters):
 def named(identifier, parameters):
     judge = Judge(parameters)
     for _ in range(3):
-        verdict = judge.judge(identifier.estimate(), "nothing yet")
+        verdict = judge.judge(identifier.estimate(), WAITING)
     return verdict.component
