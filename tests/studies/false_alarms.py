@@ -10,7 +10,7 @@ warn limit, random mean torque, gravity of an eccentric load that no effort tell
 import argparse
 import sys
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from typing import Any
 
@@ -22,7 +22,7 @@ from hd_monitor.monitor import Monitor
 from hd_monitor.settings import JointSettings
 from hd_monitor.sources import Quantity
 from hd_sim_node.settings import RigSettings
-from hd_sim_node.simulation import Simulation
+from hd_sim_node.simulation import Simulation, Stretch
 
 EPOCH = 1_700_000_000_000_000_000
 TEETH = ((160, 162), (200, 202), (100, 102), (240, 242))
@@ -73,8 +73,13 @@ def random_unit(seed: int, seconds: float) -> tuple[dict[str, Any], dict[str, An
 
 def assessed(rig: dict[str, Any], watched: dict[str, Any]) -> Iterator[Assessment]:
     """Iterate over the assessments of a simulated rig by a monitor, each with its parameters."""
+    return watch(Simulation(RigSettings.from_mapping(rig)), watched)
+
+
+def watch(stretches: Iterable[Stretch], watched: dict[str, Any]) -> Iterator[Assessment]:
+    """Iterate over the assessments of a monitor with these parameters that is fed simulated stretches."""
     monitor = Monitor(JointSettings.from_mapping(watched))
-    for stretch in Simulation(RigSettings.from_mapping(rig)):
+    for stretch in stretches:
         joint = stretch.joint
         unknown = np.full(len(joint), np.nan)
         velocity = unknown if joint.velocity is None else joint.velocity
@@ -82,6 +87,9 @@ def assessed(rig: dict[str, Any], watched: dict[str, Any]) -> Iterator[Assessmen
         monitor.add(Quantity.MOTION, EPOCH + joint.stamps, joint.position, velocity, effort)
         monitor.add(Quantity.VIBRATION, EPOCH + stretch.stamps, stretch.samples)
         yield from monitor.advance()
+    before, last = monitor.latest, monitor.finish()
+    if last is not None and last is not before:
+        yield last
 
 
 def verdicts(case: tuple[int, float]) -> Counter[str]:

@@ -6,8 +6,7 @@ Every case is another reducer with another defect, motion, load, noise and senso
 the confounders of the field. The rules:
 
 * ``higher peak``: the paper's, the higher of the two peaks in the zoom spectrum around the strongest pair;
-* ``least squares``: line amplitudes by known-order regression, divided by the resonance and the static wind-up, and the
-  rule of the interface on the indexes they give;
+* ``linear fit``: least squares of what the first order explains (see plain_rules.py for both);
 * ``hd_monitor``: the identifier and the judge of this package, at the case's end.
 
 The seeds of this study were never used to tune anything; tuning used others.
@@ -25,22 +24,18 @@ from pathlib import Path
 
 import numpy as np
 
-from hd_monitor.acquisition.record import Record
 from hd_monitor.diagnosis.absence import WAITING
 from hd_monitor.diagnosis.judge import Judge
 from hd_monitor.diagnosis.verdict import Component
 from hd_monitor.identification.identifier import Identifier
-from hd_monitor.orders.line_orders import LineOrders
-from hd_monitor.orders.regression import line_columns, solve
-from hd_monitor.orders.segment_products import products_of_columns
-from hd_monitor.orders.zoom import zoom_spectrum
 from hd_monitor.reducer import LinePair
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
-from tests.simulated.cases import BOTH_RATIO, WARN, Case, random_case, simulate
+from tests.simulated.cases import Case, random_case, simulate
+from tests.studies.plain_rules import higher_peak, linear_fit
 
-RULES = ("higher peak", "least squares", "hd_monitor")
+RULES = ("higher peak", "linear fit", "hd_monitor")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -53,65 +48,6 @@ class Outcome:
     index: LinePair
     index_std: LinePair
     reason: str
-
-
-def name(index: Sequence[float]) -> Component:
-    """Apply the interface's rule to (circular spline, flexspline) indexes."""
-    smaller, larger = sorted(index)
-    if larger < WARN:
-        return Component.NONE
-    if smaller >= WARN and smaller >= BOTH_RATIO * larger:
-        return Component.BOTH
-    return Component.CIRCULAR_SPLINE if index[0] > index[1] else Component.FLEXSPLINE
-
-
-def joined(records: Sequence[Record]) -> tuple[np.ndarray, ...]:
-    """Acceleration, angle and speed of all records."""
-    return tuple(np.concatenate([getattr(r, field) for r in records]) for field in ("acceleration", "angle", "speed"))
-
-
-def higher_peak(case: Case, records: Sequence[Record]) -> Component:
-    """Paper's rule: zoom spectrum around the strongest pair, at the mean speed; the higher line names the part."""
-    acceleration, _, speed = joined(records)
-    filled = np.where(np.isfinite(acceleration), acceleration, 0.0)
-    reducer = case.model.reducer
-    rpm = float(np.mean(np.abs(speed))) * reducer.reduction * 60.0 / math.tau
-    period = records[0].period
-    pairs = []
-    for k in (1, 2, 3):
-        around = reducer.line_frequencies(rpm, k)
-        if around.flexspline < 0.45 / period:
-            pairs.append(zoom_spectrum(filled - filled.mean(), period, around=around, k=k).line_amplitudes)
-    if not pairs:
-        return Component.UNDETERMINED
-    strongest = max(pairs, key=max)
-    left_higher = strongest.circular_spline > strongest.flexspline
-    return Component.CIRCULAR_SPLINE if left_higher else Component.FLEXSPLINE
-
-
-def least_squares(case: Case, records: Sequence[Record]) -> Component:
-    """Known-order regression; amplitudes over (line frequency)², resonance and static wind-up give the indexes."""
-    acceleration, angle, speed = joined(records)
-    reducer, dynamics = case.model.reducer, case.model.dynamics
-    hertz = float(np.mean(np.abs(speed))) / math.tau
-    orders = [k * order for k in (1, 2, 3) for order in reducer.output_orders]
-    orders = [order for order in orders if order * hertz < 0.45 / records[0].period]
-    if not orders:
-        return Component.UNDETERMINED
-    used = np.isfinite(acceleration)
-    angle, acceleration = angle[used], acceleration[used]
-    wanted = LineOrders.around(orders, math.tau / np.ptp(angle))
-    columns = np.column_stack([line_columns(angle, wanted.every), acceleration])
-    trend = np.column_stack([np.ones(angle.size), np.arange(float(angle.size))])
-    products = products_of_columns(columns, trend, wanted)
-    fit = solve(products, wanted) if products is not None else None
-    if fit is None:
-        return Component.UNDETERMINED
-    frequencies = np.asarray(orders) * hertz
-    wind_up = case.model.torque.mean / dynamics.stiffness
-    gain = (math.tau * frequencies) ** 2 * wind_up * np.abs(dynamics.receptance(frequencies))
-    beta = fit.amplitudes / gain
-    return name([float(np.linalg.norm(beta[0::2])), float(np.linalg.norm(beta[1::2]))])
 
 
 def judge_case(number: int, seed: int) -> Outcome:
@@ -128,7 +64,7 @@ def judge_case(number: int, seed: int) -> Outcome:
     return Outcome(
         number=number,
         case=case,
-        verdicts=(higher_peak(case, records), least_squares(case, records), verdict.component),
+        verdicts=(higher_peak(settings.reducer, records), linear_fit(settings, records), verdict.component),
         index=result.index if result else unknown,
         index_std=result.index_std if result else unknown,
         reason=verdict.reason,
