@@ -16,6 +16,7 @@ from .limitation import Limitation
 from .orders.rms_curve import RmsAccumulator, SpeedBin
 from .orders.steady import SteadySegment
 from .settings import JointSettings
+from .suspicion import Suspicion
 
 _SLOW_DEGREE = 5  # of the polynomial that removes gravity and rigid motion from a second of an IMU's signal
 
@@ -36,6 +37,7 @@ class Evidence:
         self._radius = settings.input.sensor_radius
         self._gravity = settings.vibration.gravity
         self._contradiction: Limitation | None = None
+        self._suspicion = Suspicion(settings)
         self._rms = RmsAccumulator(settings.analysis.rms_bin_width)
         self._steady = SteadySegment(settings.reducer, settings.analysis.minimum_speed)
         self._identifier = identifier or (
@@ -58,6 +60,7 @@ class Evidence:
             if len(period.joint_samples):
                 self._identifier.add(period.joint_samples)
             return
+        self._suspicion.add(period)
         for record in period.records:
             if interrupted:
                 record, interrupted = replace(record, continues=False), False
@@ -72,7 +75,7 @@ class Evidence:
         """What has been identified; None as long as nothing could be."""
         found = self._identifier.estimate()
         if self._contradiction is None:
-            return found
+            return found if found is None or self._settings.sensorless else self._suspicion.qualified(found)
         if found is None:
             return Identification.none((self._contradiction,), relative=self._settings.sensorless)
         return found.limited(self._contradiction)

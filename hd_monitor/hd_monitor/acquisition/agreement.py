@@ -63,7 +63,9 @@ def compare_motion(samples: JointSamples, *, minimum_speed: float, reduction: fl
     product = float(moved @ said)
     if abs(product) > _FOLLOWS * size_moved * size_said:
         return MotionAgreement(True, _scaled(product / size_said**2, reduction))
-    if size_said < _STILL * size_moved:
+    if size_said < _STILL * size_moved and float(np.abs(speed).max()) > minimum_speed:
+        found = blocker(LimitationCode.POSITION_JUMPS, jump_deg=math.degrees(float(np.abs(steps).max())))
+    elif size_said < _STILL * size_moved:
         found = blocker(LimitationCode.VELOCITY_ZERO, moved_deg=math.degrees(float(np.abs(moved).sum())))
     elif size_moved < _STILL * size_said:
         found = blocker(LimitationCode.POSITION_STILL, velocity_deg_s=math.degrees(float(np.abs(speed).max())))

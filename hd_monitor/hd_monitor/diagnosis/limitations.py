@@ -10,8 +10,8 @@ _BOTH_DIRECTIONS = "; ".join(
     for d in ("first", "second")
 )
 _WRONG_TORQUE = (
-    "The vibration contradicts the torque given, which seems to be {}: check load.torque or the effort's unit; the "
-    "indexes' scale depends on it"
+    "The vibration contradicts the torque given, which seems to be {}: check load.torque, the effort's unit and offset "
+    "and the sensor's gain, radius and bandwidth; the indexes' scale depends on them"
 )
 _CORRECT_TEETH = (
     "the {given} given; correct reducer.flexspline_teeth and reducer.circular_spline_teeth, since with wrong ones no "
@@ -61,6 +61,46 @@ SENTENCES: Mapping[LimitationCode, str] = {
     LimitationCode.VALUE_ON_BOUND: (
         "the fit ended on the limit of its search for {names}, so the value there is not a measurement: check the "
         "parameters"
+    ),
+    LimitationCode.STAMPS_APART: (
+        "The stamps of the {late} lag those of the {early} by about {delay_ms:.0f} ms: stamp both when they are "
+        "measured, by one clock"
+    ),
+    LimitationCode.STAMPS_APART_OR_MORE: (
+        "The stamps of the {late} lag those of the {early} by about {delay_ms:.0f} ms, or by whole repetitions of the "
+        "motion more or less: stamp both when they are measured, by one clock"
+    ),
+    LimitationCode.VIBRATION_CLOCK_RATE: (
+        "The clock of the vibration's stamps is about {percent:+.1f} % wrong against that of the joint states: stamp "
+        "samples when they are measured, instead of counting them at a nominal rate"
+    ),
+    LimitationCode.MOTION_JITTER: (
+        "The stamps of the joint states jitter by {jitter_ms:.1f} ms, in which the lines turn by {turn_deg:.0f}°: "
+        "stamp them when they are measured"
+    ),
+    LimitationCode.POSITION_STEPS: (
+        "The positions in joint_states come in steps of {step_rad:.2g} rad, whose error turns the lines by "
+        "{turn_deg:.0f}°: publish them as finely as the encoder reads"
+    ),
+    LimitationCode.POSITION_JUMPS: (
+        "The positions in joint_states jump by up to {jump_deg:.0f}° from message to message, which their velocities "
+        "do not explain: check the encoder and the driver"
+    ),
+    LimitationCode.VIBRATION_STEPS: (
+        "the vibration comes in steps of {step:.2g} rad/s², {levels:.0f} of them in all, which hide the lines: choose "
+        "a smaller range of the sensor"
+    ),
+    LimitationCode.SENSOR_SILENT: (
+        "the sensor no longer hears the lines of this joint, although it moves as it did before: check the sensor and "
+        "its mounting"
+    ),
+    LimitationCode.EFFORT_HELD: (
+        "The efforts in joint_states change only every {held_s:.1f} s, too seldom for the torque that the vibration "
+        "needs: publish them as they are measured, or set load.source to parameter"
+    ),
+    LimitationCode.EFFORT_NOISY: (
+        "The efforts in joint_states scatter by {std_nm:.2g} N·m from message to message, too much for the torque that "
+        "the vibration needs: filter them, or set load.source to parameter"
     ),
     LimitationCode.VELOCITY_ZERO: (
         "The velocities in joint_states are zero while the positions move by {moved_deg:.1f}°: have the driver publish "
@@ -168,4 +208,5 @@ SENTENCES: Mapping[LimitationCode, str] = {
 
 def describe_limitation(limitation: Limitation) -> str:
     """Return a limitation's sentence, or clause where it only weakens the result."""
-    return SENTENCES[limitation.code].format(**limitation.values)
+    text = SENTENCES[limitation.code].format(**limitation.values)
+    return text[:1].upper() + text[1:] if limitation.blocks else text

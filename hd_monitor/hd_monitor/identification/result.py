@@ -118,6 +118,10 @@ class Identification:
         """Return the result with one more limitation, which weakens it at most: what was known before stands."""
         return replace(self, limitations=(*self.limitations, replace(limitation, blocks=False)))
 
+    def explained(self, cause: Limitation) -> Self:
+        """Return the result with the cause of what forbids naming a part, in place of its consequences."""
+        return replace(self, limitations=(replace(cause, blocks=True), *self.doubts))
+
     @property
     def doubts(self) -> tuple[Limitation, ...]:
         """Limitations that only weaken the result."""

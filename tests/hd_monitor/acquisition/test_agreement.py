@@ -87,6 +87,7 @@ def test_the_mistake_is_named(factor, mistake, swing):
     ("angle", "speed", "code"),
     [
         (0.5 * TIMES, np.zeros(TIMES.size), LimitationCode.VELOCITY_ZERO),
+        (0.5 * TIMES + np.arange(TIMES.size) ** 2 % 7, np.full(TIMES.size, 0.5), LimitationCode.POSITION_JUMPS),
         (np.zeros(TIMES.size), np.full(TIMES.size, 0.5), LimitationCode.POSITION_STILL),
         (0.5 * TIMES, np.full(TIMES.size, 1.0), LimitationCode.VELOCITY_SCALE),
         (np.sin(20.0 * TIMES), 3.0 * np.sin(23.0 * TIMES), LimitationCode.MOTION_INCONSISTENT),
