@@ -20,6 +20,20 @@ from .suspicion import Suspicion
 
 _SLOW_DEGREE = 5  # of the polynomial that removes gravity and rigid motion from a second of an IMU's signal
 
+SomeIdentifier = Identifier | SensorlessIdentifier
+
+
+def new_identifier(settings: JointSettings, *, sparing: bool = True) -> SomeIdentifier:
+    """Return an identifier without evidence; a `sparing` one looks at part of the motion once it knows enough."""
+    return SensorlessIdentifier(settings) if settings.sensorless else Identifier(settings, sparing=sparing)
+
+
+def end_recording(identifier: SomeIdentifier) -> None:
+    """Use what waits for more motion: nothing joins one recording's end to the next one's beginning."""
+    identifier.finish()
+    if isinstance(identifier, SensorlessIdentifier):
+        identifier.cut()
+
 
 class Evidence:
     """All evidence from one joint's periods.
@@ -31,7 +45,7 @@ class Evidence:
         An identifier to continue with, with its evidence.
     """
 
-    def __init__(self, settings: JointSettings, identifier: Identifier | SensorlessIdentifier | None = None) -> None:
+    def __init__(self, settings: JointSettings, identifier: SomeIdentifier | None = None) -> None:
         self._settings = settings
         self._rpm = settings.reducer.reduction * 60.0 / math.tau
         self._radius = settings.input.sensor_radius
@@ -40,9 +54,7 @@ class Evidence:
         self._suspicion = Suspicion(settings)
         self._rms = RmsAccumulator(settings.analysis.rms_bin_width)
         self._steady = SteadySegment(settings.reducer, settings.analysis.minimum_speed)
-        self._identifier = identifier or (
-            SensorlessIdentifier(settings) if settings.sensorless else Identifier(settings)
-        )
+        self._identifier = identifier or new_identifier(settings)
 
     def add(self, period: AssembledPeriod) -> None:
         """Take in another period; one whose positions and velocities contradict each other is left out."""

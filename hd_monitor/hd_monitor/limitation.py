@@ -63,6 +63,7 @@ class LimitationCode(StrEnum):
     NO_LINE_FOUND = "no_line_found"
     LINES_TOO_SIMILAR = "lines_too_similar"
     DIRECTIONS_DISAGREE = "directions_disagree"
+    RECORDINGS_DISAGREE = "recordings_disagree"
     STRONGER_LINE_BESIDE = "stronger_line_beside"
 
 

@@ -11,6 +11,7 @@ import math
 import sys
 from collections import Counter
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +19,7 @@ from scipy import stats
 
 from hd_monitor.acquisition.record import JointSamples
 from hd_monitor.diagnosis.absence import WAITING
+from hd_monitor.arrays import FloatArray
 from hd_monitor.diagnosis.judge import Judge
 from hd_monitor.diagnosis.verdict import Component
 from hd_monitor.identification.result import Identification
@@ -194,6 +196,53 @@ def study_recordings(folder: Path) -> list[str]:
     return rows
 
 
+def phase_randomised(values: FloatArray, rng: np.random.Generator) -> FloatArray:
+    """Values with the same spectrum and nothing else in common with the motion."""
+    spectrum = np.fft.rfft(values - values.mean())
+    turned = np.abs(spectrum) * np.exp(1j * rng.uniform(0.0, math.tau, spectrum.size))
+    return np.fft.irfft(turned, values.size) + values.mean()
+
+
+def shifted(values: FloatArray, rng: np.random.Generator) -> FloatArray:
+    """Values moved in time, by a tenth of the recording at least."""
+    return np.roll(values, int(rng.uniform(0.1, 0.9) * values.size))
+
+
+def controls(folder: Path, each: int, seed: int) -> Iterable[tuple[str, JointSamples]]:
+    """Recordings whose effort has lost its relation to the angle: `each` of either kind for every joint."""
+    rng = np.random.default_rng(seed)
+    for name, samples in read_recordings(folder):
+        for spoil in (phase_randomised, shifted):
+            for _ in range(each):
+                yield f"{name}, {spoil.__name__}", replace(samples, effort=spoil(samples.effort, rng))
+
+
+def study_controls(folder: Path, seed: int) -> list[str]:
+    """What is named where the effort has nothing to do with the angle."""
+    settings = JointSettings.from_mapping(UR10E | {"input.source": "joint_effort"})
+    named, count = [], 0
+    for name, samples in controls(folder, 4, seed):
+        component = verdict(run(samples, settings).estimate(), settings)
+        count += 1
+        if component is not Component.UNDETERMINED:
+            named.append(f"{name}: {component}")
+    return [f"UR10e, controls with phase-randomised or shifted effort: {len(named)} of {count} named", *named]
+
+
+def study_histories(folder: Path) -> list[str]:
+    """What all recordings of a joint show together."""
+    rows = []
+    for source in ("joint_effort", "joint_velocity"):
+        settings = JointSettings.from_mapping(UR10E | {"input.source": source, "analysis.memory": 3600.0})
+        identifiers = {joint: SensorlessIdentifier(settings) for joint in range(1, 7)}
+        for name, samples in read_recordings(folder):
+            identifiers[int(name[-1])].add(samples)
+            identifiers[int(name[-1])].cut()
+        for joint, identifier in identifiers.items():
+            rows.append(f"UR10e, {source}, joint {joint}, all recordings: {verdict(identifier.estimate(), settings)}")
+    return rows
+
+
 def main() -> None:
     """Print the tables."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -205,7 +254,8 @@ def main() -> None:
     for study in studies:
         print(*study(options.cases, options.seed), "", sep="\n", flush=True)
     if options.recordings is not None:
-        print(*study_recordings(options.recordings), sep="\n")
+        print(*study_recordings(options.recordings), *study_histories(options.recordings), sep="\n")
+        print(*study_controls(options.recordings, options.seed), sep="\n")
 
 
 if __name__ == "__main__":

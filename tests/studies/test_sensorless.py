@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy import stats
 from tests.simulated.joints import random_joint, simulate_joint
-from tests.studies.sensorless import PLACEBO_TEETH, UR10E, read_recordings, run, verdict
+from tests.studies.sensorless import PLACEBO_TEETH, UR10E, controls, read_recordings, run, verdict
 
 from hd_monitor.diagnosis.verdict import Component
 from hd_monitor.offline.identify_teeth import rank_tooth_pairs
@@ -85,3 +85,13 @@ def test_no_lines_are_found_in_recordings_where_there_are_none(source):
             chances += [chance for side in identifier.directions for chance in side.chance]
     assert len(chances) > 900
     assert_no_more_than_chance(chances)
+
+
+@pytest.mark.shared_data
+@pytest.mark.skipif(not RECORDINGS.exists(), reason=f"no recordings in {RECORDINGS}")
+@pytest.mark.parametrize("seed", [1, 2])
+def test_effort_that_has_nothing_to_do_with_the_angle_names_nothing(seed):
+    settings = JointSettings.from_mapping(UR10E | {"input.source": "joint_effort"})
+    names = [verdict(run(samples, settings).estimate(), settings) for _, samples in controls(RECORDINGS, 4, seed)]
+    assert len(names) >= 200
+    assert set(names) == {Component.UNDETERMINED}

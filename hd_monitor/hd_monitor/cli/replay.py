@@ -1,4 +1,4 @@
-"""``hd-monitor replay``: a recorded bag through the same core as the node."""
+"""``hd-monitor replay``: recorded bags through the same core as the node."""
 
 import argparse
 import json
@@ -11,7 +11,7 @@ from ..offline.compression import CHUNK_LIMIT
 from ..offline.output import check_file, check_folder, write_file
 from ..offline.parameters import load_parameters, parse_override
 from ..offline.plan import Request
-from ..offline.run import replay_bag
+from ..offline.run import replay_bags
 from ..offline.summary import summarise
 
 _FAIL_ON = {"warn": Level.WARN, "error": Level.ERROR}
@@ -19,7 +19,13 @@ _FAIL_ON = {"warn": Level.WARN, "error": Level.ERROR}
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the command's arguments."""
-    parser.add_argument("bag", type=Path, metavar="BAG", help="rosbag2 folder or file, MCAP or SQLite")
+    parser.add_argument(
+        "bags",
+        type=Path,
+        nargs="+",
+        metavar="BAG",
+        help="rosbag2 folder or file, MCAP or SQLite; several, oldest first, are one history of the arm",
+    )
     add_input_arguments(parser)
     parser.add_argument("--report", type=Path, metavar="DIR", help="write an HTML page with plots into this folder")
     parser.add_argument(
@@ -86,9 +92,9 @@ def _mebibytes(text: str) -> int:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Replay the bag; return the exit status."""
+    """Replay the bags; return the exit status."""
     check_outputs(arguments)
-    outcome = replay_bag(arguments.bag, request_from(arguments), for_report=bool(arguments.report))
+    outcome = replay_bags(arguments.bags, request_from(arguments), for_report=bool(arguments.report))
     for note in outcome.notes:
         print(f"hd-monitor replay: {note}", file=sys.stderr)
     text = sys.stderr if arguments.json == "-" else sys.stdout

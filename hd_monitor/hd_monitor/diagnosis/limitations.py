@@ -199,6 +199,10 @@ SENTENCES: Mapping[LimitationCode, str] = {
         f"The directions at {_BOTH_LINES} do not agree on the larger line ({_BOTH_DIRECTIONS}): more motion in both "
         "directions may show it"
     ),
+    LimitationCode.RECORDINGS_DISAGREE: (
+        f"Recordings at {_BOTH_LINES} contradict each other on the larger line ({_BOTH_DIRECTIONS}): if the reducer "
+        "was exchanged or adjusted in between, start anew"
+    ),
     LimitationCode.STRONGER_LINE_BESIDE: (
         f"The signal has a stronger line at about {{order_beside:.0f}} than at {_BOTH_LINES}: check "
         "reducer.flexspline_teeth and reducer.circular_spline_teeth"

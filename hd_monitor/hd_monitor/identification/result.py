@@ -13,6 +13,7 @@ from ..model.critical_speed import critical_speed
 from ..model.parameters import ParametricModel
 from ..reducer import LinePair
 from .fit.gauss_newton import FitStatus
+from .sensorless.agreement import DirectionEvidence
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -70,6 +71,8 @@ class Identification:
         The reducer as identified, without its load; None where the indexes are relative.
     fit_status : FitStatus or None
         Why the newest fit ended; None where nothing is fitted step by step (sensorless).
+    evidence : tuple of DirectionEvidence
+        Lines of the newest motion direction by direction; none with a sensor.
     limitations : tuple of Limitation
         What weakens the result, or forbids naming a part on it.
     """
@@ -98,6 +101,7 @@ class Identification:
     fit_status: FitStatus | None = None
     limitations: tuple[Limitation, ...] = ()
     beta_covariance: FloatArray | None = None
+    evidence: tuple[DirectionEvidence, ...] = ()
 
     @classmethod
     def none(cls, limitations: tuple[Limitation, ...], *, relative: bool) -> Self:

@@ -9,8 +9,7 @@ from ..acquisition.quality import Quality
 from ..assessment import Assessment
 from ..diagnosis.limitations import describe_limitation
 from ..diagnosis.tooth_ranking import ConcludedRanking
-from ..errors import ParameterError
-from ..identification.identifier import Identifier
+from ..evidence import SomeIdentifier, end_recording, new_identifier
 from ..identification.result import Identification
 from ..identification.sensorless.agreement import DirectionEvidence
 from ..identification.sensorless.identifier import SensorlessIdentifier
@@ -18,8 +17,7 @@ from ..settings import JointSettings
 from .bag import Bag
 from .errors import BagError
 from .identify_teeth import ToothCheck
-from .plan import JointPlan, Request, plan
-from .replay import SomeIdentifier
+from .plan import JointPlan, Request, check_same_settings, plan
 from .run import run
 
 WHOLE_RECORDING: Mapping[str, Any] = {"analysis.memory": 86_400.0, "dynamics.refine": True}
@@ -133,16 +131,10 @@ def _pair_up(joints: dict[str, JointIdentification], plans: Sequence[JointPlan],
         known = joints.get(item.joint)
         if known is None:
             own = item.settings
-            identifier = SensorlessIdentifier(own) if own.sensorless else Identifier(own, sparing=False)
+            identifier = new_identifier(own, sparing=False)
             joints[item.joint] = JointIdentification(plan=item, identifier=identifier, tooth_check=ToothCheck(own))
-        elif known.settings.values != item.settings.values:
-            ours, theirs = dict(known.settings.values), dict(item.settings.values)
-            changed = [name for name, value in ours.items() if value != theirs[name]]
-            differ = ", ".join(f"{name} = {ours[name]} and {theirs[name]}" for name in changed)
-            raise ParameterError(
-                f"joint {item.joint!r}: {path} would need other parameters than the recordings before it ({differ}); "
-                "set them with -p, or identify the recordings one by one"
-            )
+        else:
+            check_same_settings(known.plan, item, path)
 
 
 def _go_through(bag: Bag, plans: Sequence[JointPlan], joints: Mapping[str, JointIdentification]) -> None:
@@ -150,7 +142,7 @@ def _go_through(bag: Bag, plans: Sequence[JointPlan], joints: Mapping[str, Joint
     checks = {name: joint.tooth_check.add for name, joint in joints.items()}
     for result in run(bag, plans, checks, {name: joint.identifier for name, joint in joints.items()}):
         joint = joints[result.plan.joint]
-        joint.identifier.finish()  # nothing joins one recording's end to the next one's beginning
+        end_recording(joint.identifier)
         joint.tooth_check.cut()
         if result.unusable:
             joint.complaints.append(f"{bag.path}: {result.unusable}")

@@ -5,6 +5,7 @@ import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any, NamedTuple
 
 from .. import cdr
@@ -50,6 +51,18 @@ class Request:
     """From the contract's relative names to the recording's."""
     chunk_limit: int = CHUNK_LIMIT
     """Bytes to which a compressed chunk or message of a recording may expand."""
+
+
+def check_same_settings(known: JointPlan, item: JointPlan, path: Path) -> None:
+    """Raise a `ParameterError` where the recording at `path` needs other parameters of a joint than those before it."""
+    if known.settings.values == item.settings.values:
+        return
+    ours, theirs = dict(known.settings.values), dict(item.settings.values)
+    differ = ", ".join(f"{name} = {ours[name]} and {theirs[name]}" for name in ours if ours[name] != theirs[name])
+    raise ParameterError(
+        f"joint {item.joint!r}: {path} would need other parameters than the recordings before it ({differ}); "
+        "set them with -p, or take the recordings one by one"
+    )
 
 
 def plan(bag: Bag, request: Request) -> list[JointPlan]:

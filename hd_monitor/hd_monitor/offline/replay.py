@@ -6,14 +6,11 @@ from typing import NamedTuple
 from ..adapters import Inputs
 from ..assessment import Assessment
 from ..contract import NANOSECONDS
-from ..identification.identifier import Identifier
-from ..identification.sensorless.identifier import SensorlessIdentifier
+from ..evidence import SomeIdentifier
 from ..monitor import Monitor
 from .bag import Bag
 from .batches import Window
 from .plan import JointPlan
-
-SomeIdentifier = Identifier | SensorlessIdentifier
 
 
 class Replayed(NamedTuple):

@@ -79,6 +79,13 @@ class JointResult:
             entry |= {"speed_rpm": said.assessment.speed, "rms": said.assessment.rms}
             self.timeline.append(plain(entry))
 
+    def followed_by(self, later: "JointResult") -> "JointResult":
+        """Return the history that goes on with a later recording; one of which nothing can be said adds nothing."""
+        if later.unusable:
+            return self
+        timeline = later.timeline if self.unusable else [*self.timeline, *later.timeline]
+        return JointResult(later.plan, timeline, later.last)
+
     @property
     def unusable(self) -> str:
         """Why nothing can be said of the joint; empty if something can."""
@@ -128,11 +135,11 @@ class JointResult:
         return dict(plain(entry))
 
 
-def as_dict(bag: str, notes: list[str], joints: list[JointResult]) -> dict[str, Any]:
+def as_dict(bags: list[str], notes: list[str], joints: list[JointResult]) -> dict[str, Any]:
     """Write the whole JSON."""
     return {
         "joints": [joint.as_dict() for joint in joints],
-        "bag": bag,
+        "bag": ", ".join(bags),
         "notes": notes,
         "generator": f"hd_monitor {__version__}",
     }

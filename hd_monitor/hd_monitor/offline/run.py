@@ -5,11 +5,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..assessment import Assessment
+from ..evidence import SomeIdentifier, end_recording, new_identifier
 from .bag import Bag
 from .errors import BagError
-from .plan import JointPlan, Request, plan
+from .plan import JointPlan, Request, check_same_settings, plan
 from .progress import ProgressLine
-from .replay import SomeIdentifier, replay
+from .replay import replay
 from .result import JointResult, as_dict
 
 if TYPE_CHECKING:
@@ -53,21 +54,65 @@ def _collectors(plans: Sequence[JointPlan]) -> dict[str, "Collector"]:
 
 
 def replay_bag(path: Path, request: Request, *, for_report: bool = False) -> Outcome:
-    """Replay a recording.
+    """Replay a recording, as `replay_bags` does."""
+    return replay_bags([path], request, for_report=for_report)
+
+
+def replay_bags(
+    paths: Sequence[Path],
+    request: Request,
+    *,
+    for_report: bool = False,
+    listen: Callable[[Path, JointResult], None] = lambda path, result: None,
+) -> Outcome:
+    """Replay recordings as one history of the arm: each goes on with the evidence of those before it.
+
+    Parameters
+    ----------
+    paths : sequence of Path
+        In the order of their time.
+    request : Request
+    for_report : bool
+        Whether to collect what the report draws.
+    listen : callable
+        Told what each recording gave of each joint, once it is through.
 
     Raises
     ------
     BagError
         If nothing can be said of any joint.
     ParameterError
-        If the parameters are wrong.
+        If the parameters are wrong, or the recordings need different ones.
     """
-    with Bag(path, request.chunk_limit) as bag:
-        plans = plan(bag, request)
-        collectors = _collectors(plans) if for_report else {}
-        joints = run(bag, plans, {joint: collector.add for joint, collector in collectors.items()})
-        notes = list(bag.notes)
-    complaints = [joint.unusable for joint in joints if joint.unusable]
-    if len(complaints) == len(joints):
+    histories: dict[str, JointResult] = {}
+    first: dict[str, JointPlan] = {}
+    identifiers: dict[str, SomeIdentifier] = {}
+    collectors: dict[str, Collector] = {}
+    notes: list[str] = []
+    complaints: list[str] = []
+    for path in paths:
+        before = f"{path}: " if len(paths) > 1 else ""
+        try:
+            with Bag(path, request.chunk_limit) as bag:
+                plans = plan(bag, request)
+                for item in plans:
+                    check_same_settings(first.setdefault(item.joint, item), item, path)
+                    identifiers.setdefault(item.joint, new_identifier(item.settings))
+                if for_report:
+                    collectors = _collectors(plans) | collectors
+                found = run(bag, plans, {joint: collector.add for joint, collector in collectors.items()}, identifiers)
+                notes += [before + note for note in bag.notes]
+        except BagError as error:
+            raise error if str(path) in str(error) or not before else BagError(before + str(error)) from None
+        for result in found:
+            if result.unusable:
+                complaints.append(before + result.unusable)
+            else:
+                listen(path, result)
+            end_recording(identifiers[result.plan.joint])
+            known = histories.get(result.plan.joint)
+            histories[result.plan.joint] = result if known is None else known.followed_by(result)
+    joints = list(histories.values())
+    if all(joint.unusable for joint in joints):
         raise BagError("; ".join([*complaints, *notes]))
-    return Outcome(as_dict(str(path), notes, joints), joints, notes + complaints, collectors)
+    return Outcome(as_dict([str(path) for path in paths], notes, joints), joints, notes + complaints, collectors)

@@ -60,11 +60,20 @@ class SegmentPool:
         """Segments kept, the oldest first."""
         return [pooled.segment for pooled in self._pooled]
 
+    @property
+    def seconds(self) -> float:
+        """Motion kept [s]."""
+        return sum(pooled.segment.duration for pooled in self._pooled)
+
+    def clear(self) -> None:
+        """Forget the segments; what was learnt of the background stays."""
+        self._pooled.clear()
+
     def add(self, segment: JointSegment) -> None:
         """Take a segment in; learn the background again when the data have grown much."""
         self._seen += segment.duration
         self._pooled.append(_Pooled(segment, []))
-        held = sum(pooled.segment.duration for pooled in self._pooled)
+        held = self.seconds
         while len(self._pooled) > 1 and held - self._pooled[0].segment.duration >= self._memory:
             held -= self._pooled.popleft().segment.duration
         due = RELEARN * self._learnt if self._learnt < self._memory else self._learnt + self._memory

@@ -7,6 +7,7 @@ import re
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from tests.hd_monitor.offline import recordings as rec
 
@@ -240,3 +241,40 @@ def test_a_period_longer_than_the_recording_is_named_and_no_input_called_lost(
     assert "set a shorter analysis.period" in " ".join(joint["notes"])
     (joint,) = result_of(recording, tmp_path, *source)["joints"]
     assert "analysis.period" not in " ".join(joint["notes"])
+
+
+def swinging_arm(folder: Path, seed: int) -> Path:
+    """Joint states of a joint whose circular spline's line is too weak to be named in one recording."""
+    rng = np.random.default_rng(seed)
+    times = np.arange(0.0, 30.0, 0.01)
+    angle = 1.4 * np.sin(0.55 * times) + 0.2 * np.sin(1.3 * times)
+    speed = 0.77 * np.cos(0.55 * times) + 0.26 * np.cos(1.3 * times)
+    effort = 4.0 * np.sin(angle) + 0.025 * np.cos(160 * angle + seed) + 0.25 * rng.standard_normal(times.size)
+    stamps = (rec.START + 3600 * seed * 10**9 + np.rint(1e9 * times)).astype(int).tolist()
+    rows = zip(stamps, angle.tolist(), speed.tolist(), effort.tolist(), strict=True)
+    events = [rec.Event(stamp, "/joint_states", rec.joint_state(stamp, joint=(a, v, e))) for stamp, a, v, e in rows]
+    return rec.write(folder / f"arm{seed}", events)
+
+
+def test_several_recordings_are_one_history(tmp_path: Path) -> None:
+    bags = [str(swinging_arm(tmp_path, seed)) for seed in range(6)]
+    given = ("-p", "input.source:=joint_effort", "-p", "analysis.memory:=3600.0")
+    alone = [result_of(Path(bag), tmp_path, *given)["joints"][0]["verdict"]["component"] for bag in bags]
+    out = tmp_path / "together.json"
+    assert main(["replay", *bags, "--json", str(out), *given]) == 0
+    together = json.loads(out.read_text(encoding="utf-8"))
+    (joint,) = together["joints"]
+    assert joint["verdict"]["component"] == "circular_spline"
+    assert alone.count("undetermined") >= 4
+    assert together["bag"] == ", ".join(bags)
+    stamps = [entry["stamp"] for entry in joint["timeline"]]
+    assert stamps == sorted(set(stamps))
+    assert stamps[-1] - stamps[0] > 5 * 3600 * 10**9
+
+
+def test_a_history_names_the_recording_that_cannot_be_used(
+    tmp_path: Path, recording: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    still = rec.write(tmp_path / "still", [event for event in rec.small(3.0) if event.topic == "/joint_states"])
+    assert main(["replay", str(recording), str(still)]) == 2
+    assert str(still) in capsys.readouterr().err

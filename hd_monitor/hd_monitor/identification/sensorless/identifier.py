@@ -1,28 +1,43 @@
 """The two splines' shares from joint states alone: motor effort or velocity as the vibration signal."""
 
 import math
+from collections import deque
 from collections.abc import Iterator, Sequence
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
 from ...acquisition.record import JointSamples
 from ...arrays import FloatArray
 from ...limitation import Limitation, LimitationCode, blocker, doubt
-from ...orders.joint_segment import JointSegment, JointSegmentCutter, one_speed
+from ...orders.joint_segment import ONE_SPEED, JointSegment, JointSegmentCutter, one_speed
 from ...orders.line_orders import LineOrders
 from ...orders.pooling import SegmentPool
-from ...orders.regression import LineFit, solve
+from ...orders.regression import solve
 from ...reducer import LinePair, Mount
 from ...settings import JointSettings
 from ..result import Identification, LineEstimate
 from ..teeth.candidates import Candidate, ToothPair, surroundings, with_neighbours
 from ..teeth.ranking import FitLines
-from .agreement import DirectionEvidence, disagreements
+from .agreement import DirectionEvidence, by_direction, disagreements
 from .teeth import question_motor, question_teeth
+
+COHERENT = 120.0
+"""Motion [s] that is added up phase by phase; what is older, or of another recording, adds up as evidence: load, pose
+and temperature change the phases."""
 
 _ENOUGH_MESSAGES = 100
 _NOTABLE, _NEARLY_ALL = 0.1, 0.9  # parts of the motion that are too fast
+
+
+class _Closed(NamedTuple):
+    """What is kept of earlier motion."""
+
+    evidence: tuple[DirectionEvidence, ...]
+    questions: tuple[Limitation, ...]
+    """Of the tooth numbers."""
+    seconds: float
 
 
 class SensorlessIdentifier:
@@ -38,10 +53,11 @@ class SensorlessIdentifier:
     The lines are sought in the position of the same message, so that the stamps hardly matter. Every segment (one
     direction, no stop) is whitened by a filter learnt from the joint itself and freed from friction, gravity and the
     servo's slow work by a spline in the angle that is too stiff to follow a line. Segments of one direction add up
-    coherently in the absolute angle; the directions stay apart, since friction and load make them differ.
+    coherently in the absolute angle; the directions stay apart, since friction and load make them differ. Recordings,
+    and what is older than `COHERENT`, add up as evidence.
 
     A motor current says nothing about the stiffness's size, so the indexes are relative: shares whose squares add up
-    to one. A spline is named only if its line is found in every direction and is the larger one in each of them.
+    to one. A spline is named only if its line is the larger one in every direction, and found in all together.
 
     Examples
     --------
@@ -68,7 +84,8 @@ class SensorlessIdentifier:
         minimum_speed = settings.analysis.minimum_speed * 2.0 * np.pi / 60.0 / reduction
         self._cutter = JointSegmentCutter(settings.input.source, (cs, fs), minimum_speed)
         around = [surroundings(candidates, motor) for candidates in (self._candidates, doubled) if candidates]
-        self._pool = SegmentPool([*orders, *around], settings.analysis.memory)
+        self._pool = SegmentPool([*orders, *around], min(settings.analysis.memory, COHERENT))
+        self._closed: deque[_Closed] = deque()
         self._messages = 0
         self._usable = 0
         self._latest: Identification | None = None
@@ -105,29 +122,52 @@ class SensorlessIdentifier:
             self._append(segment)
         return self.estimate()
 
+    def cut(self) -> None:
+        """End a recording: what follows adds up with it as evidence, not phase by phase."""
+        self.finish()
+        self._close()
+
     def _append(self, segment: JointSegment) -> None:
         self._stale = True
         self._pool.add(segment)
+        if self._settings.analysis.memory > COHERENT <= self._pool.seconds:
+            self._close()
+
+    def _close(self) -> None:
+        """Keep the evidence of the motion pooled so far, and forget what is older than the memory."""
+        if evidence := tuple(self._present()):
+            self._closed.append(_Closed(evidence, self._questioned_teeth(), self._pool.seconds))
+        self._pool.clear()
+        held = sum(closed.seconds for closed in self._closed)
+        while self._closed and held - self._closed[0].seconds >= self._settings.analysis.memory:
+            held -= self._closed.popleft().seconds
+
+    def _present(self) -> Iterator[DirectionEvidence]:
+        """Evidence of the motion in the pool, pair by pair, direction by direction."""
+        for number in range(self._settings.analysis.harmonics):
+            for group in self._pool.fits(number):
+                yield DirectionEvidence.of(group, self._settings.diagnosis.both_ratio, number + 1)
 
     def _identify(self) -> Identification | None:
-        """Identify from the pooled segments; the latest result stays where they do not determine the pair."""
+        """Identify from all evidence; the latest result stays where it does not determine the pair."""
         settings, reducer = self._settings, self._settings.reducer
-        groups = self._pool.fits(0)
-        self._directions = tuple(DirectionEvidence.of(group, settings.diagnosis.both_ratio) for group in groups)
-        if not groups:
+        present = tuple(self._present())
+        evidence = (*(piece for closed in self._closed for piece in closed.evidence), *present)
+        first = [piece for piece in evidence if piece.k == 1]
+        self._directions = by_direction(first)
+        if not first:
             still = all(np.ptp(segment.values) == 0.0 for segment in self._pool.segments)
             constant = (blocker(LimitationCode.SIGNAL_CONSTANT),)
             return Identification.none(constant, relative=True) if still else self._latest
-        fits = [group.fit for group in groups]
-        mean, covariance = _mean_amplitudes(fits)
+        mean, covariance = _mean_amplitudes(self._directions)
         total = float(np.hypot(*mean))
         # Shares cos(angle) and sin(angle): their errors are those of the angle alone.
         across = np.array([mean[1], -mean[0]]) / total**2
         angle_std = float(np.sqrt(across @ covariance @ across))
         index = LinePair(*(mean / total).tolist())
-        strongest = max(fits, key=lambda fit: fit.explained)
-        cs, fs = np.array(index) * strongest.phasors / np.maximum(strongest.amplitudes, 1e-300)
-        angles = np.concatenate([segment.angle for group in groups for segment in group.segments])
+        strongest = max(first, key=lambda piece: math.hypot(*piece.amplitude) / math.hypot(*piece.std))
+        cs, fs = np.array(index) * np.exp(1j * np.array(strongest.phase))
+        noise = float(np.mean([piece.noise**2 for piece in first]))
         return Identification(
             circular_spline=np.array([cs]),
             flexspline=np.array([fs]),
@@ -135,41 +175,44 @@ class SensorlessIdentifier:
             index_std=LinePair(index.flexspline * angle_std, index.circular_spline * angle_std),
             index_correlation=-1.0,
             relative=True,
-            lines=tuple(self._lines()),
-            travel=float(np.ptp(angles)),
-            samples=sum(fit.rows for fit in fits),
-            signal_to_noise=10.0 * float(np.log10(0.5 * total**2 / np.mean([fit.noise**2 for fit in fits]))),
-            misfit=float(np.mean([fit.floor for fit in fits])),
+            lines=tuple(_lines(evidence)),
+            travel=max(self._travel, *(piece.travel for piece in first)),
+            samples=sum(piece.samples for piece in first),
+            signal_to_noise=10.0 * math.log10(0.5 * total**2 / noise),
+            misfit=float(np.mean([piece.floor for piece in first])),
             limitations=(
-                *self._doubts(index),
-                *self._questioned_teeth(float(np.ptp(angles))),
-                *disagreements(self._directions, reducer.output_orders, settings.diagnosis.confidence),
+                *self._doubts(index, first),
+                *self._all_questions(present),
+                *disagreements(first, reducer.output_orders, settings.diagnosis),
             ),
             load_fluctuation=math.nan,
+            evidence=present,
         )
 
-    def _lines(self) -> Iterator[LineEstimate]:
-        """Amplitudes of every pair, root-mean-square over the directions."""
-        for number in range(self._settings.analysis.harmonics):
-            fits = [group.fit for group in self._pool.fits(number)]
-            if fits:
-                mean, covariance = _mean_amplitudes(fits)
-                std = np.sqrt(np.diag(covariance))
-                yield LineEstimate(k=number + 1, amplitude=LinePair(*mean.tolist()), std=LinePair(*std.tolist()))
+    def _all_questions(self, present: Sequence[DirectionEvidence]) -> tuple[Limitation, ...]:
+        """Questions about the teeth from the newest motion that raises any."""
+        own = self._questioned_teeth() if present else ()
+        return next((questions for questions in (own, *(c.questions for c in reversed(self._closed))) if questions), ())
 
-    def _questioned_teeth(self, travel: float) -> tuple[Limitation, ...]:
+    @property
+    def _travel(self) -> float:
+        """Range of the output angle in the pool [rad]."""
+        angles = [segment.angle for segment in self._pool.segments]
+        return float(np.ptp(np.concatenate(angles))) if angles else 0.0
+
+    def _questioned_teeth(self) -> tuple[Limitation, ...]:
         """Limit the result if other tooth numbers than those given, near them or doubled, may be the right ones."""
         given = self._settings.reducer
         near, doubled = (self._parts(self._settings.analysis.harmonics + place) for place in (0, 1))
         steady = math.isfinite(one_speed(self._pool.segments))
-        reasons = question_teeth(given, self._candidates, near, travel=travel, one_speed=steady)
+        reasons = question_teeth(given, self._candidates, near, travel=self._travel, one_speed=steady)
         return reasons or question_motor(given, [*near, *doubled])
 
     def _parts(self, number: int) -> list[FitLines]:
         """One function a direction that fits lines to it, for one set of orders by its number; none without it."""
         return [partial(solve, products) for _, _, products in self._pool.groups(number)]
 
-    def _doubts(self, index: LinePair) -> Iterator[Limitation]:
+    def _doubts(self, index: LinePair, evidence: Sequence[DirectionEvidence]) -> Iterator[Limitation]:
         """Doubts beside the name that the shares suggest, apart from the evidence itself."""
         reducer = self._settings.reducer
         # The line of the spline that stands still has exactly the order 2 of the wave generator.
@@ -177,7 +220,7 @@ class SensorlessIdentifier:
         if at_order_two == max(index):
             yield doubt(LimitationCode.MOTOR_SHARES_LINE)
         speed = one_speed(self._pool.segments)
-        if math.isfinite(speed):
+        if math.isfinite(speed) and all(abs(piece.speed - speed) < ONE_SPEED * speed for piece in evidence):
             lower, upper = (order * speed / math.tau for order in reducer.output_orders)
             yield doubt(LimitationCode.ONE_SPEED, lower_hz=lower, upper_hz=upper)
         if self._too_fast > _NOTABLE:
@@ -197,15 +240,23 @@ class SensorlessIdentifier:
         return self._cutter.too_fast / self._cutter.turning if self._cutter.turning > 0.0 else 0.0
 
 
-def _mean_amplitudes(fits: Sequence[LineFit]) -> tuple[FloatArray, FloatArray]:
+def _lines(evidence: Sequence[DirectionEvidence]) -> Iterator[LineEstimate]:
+    """Amplitudes of every pair, root-mean-square over the directions."""
+    for k in sorted({piece.k for piece in evidence}):
+        mean, covariance = _mean_amplitudes(by_direction([piece for piece in evidence if piece.k == k]))
+        std = np.sqrt(np.diag(covariance))
+        yield LineEstimate(k=k, amplitude=LinePair(*mean.tolist()), std=LinePair(*std.tolist()))
+
+
+def _mean_amplitudes(directions: Sequence[DirectionEvidence]) -> tuple[FloatArray, FloatArray]:
     """Root-mean-square amplitudes (2,) over the directions, bias from noise removed, and their covariance (2, 2).
 
     Where both lines are smaller than their bias, the bias stays: nothing else distinguishes them.
     """
-    squares = np.mean(
-        [np.maximum(f.amplitudes**2 - np.diag(f.covariance).reshape(2, 2).sum(axis=0), 0.0) for f in fits], axis=0
-    )
+    amplitudes = np.array([direction.amplitude for direction in directions])
+    bias = 2.0 * np.array([direction.std for direction in directions]) ** 2
+    squares = np.maximum(amplitudes**2 - bias, 0.0).mean(axis=0)
     if not squares.any():
-        squares = np.mean([f.amplitudes**2 for f in fits], axis=0)
-    covariance = np.sum([f.amplitude_covariance for f in fits], axis=0) / len(fits) ** 2
+        squares = (amplitudes**2).mean(axis=0)
+    covariance = np.sum([direction.covariance for direction in directions], axis=0) / len(directions) ** 2
     return np.sqrt(squares), covariance

@@ -182,6 +182,34 @@ def test_old_evidence_fades_after_a_repair():
     assert named(identifier, settings_of()) is Component.FLEXSPLINE
 
 
+def later(samples, seconds):
+    return JointSamples(times=samples.times + seconds, angle=samples.angle, speed=samples.speed, effort=samples.effort)
+
+
+def test_weak_recordings_add_up_as_evidence_though_their_phases_differ():
+    def recording(seed):
+        return swinging(0.025, 0.0, noise=0.25, seconds=40.0, seed=seed)
+
+    parameters = settings_of(analysis__memory=3600.0)
+    alone = [named(identify(recording(seed), parameters), parameters) for seed in range(12)]
+    identifier = SensorlessIdentifier(parameters)
+    for seed in range(12):
+        identifier.add(later(recording(seed), 100.0 * seed))
+        identifier.cut()
+    assert named(identifier, parameters) is Component.CIRCULAR_SPLINE
+    assert alone.count(Component.UNDETERMINED) >= 6
+    assert Component.FLEXSPLINE not in alone
+
+
+def test_a_long_run_is_kept_as_evidence_once_it_is_older_than_what_adds_up_coherently():
+    parameters = settings_of(analysis__memory=3600.0)
+    identifier = identify(swinging(seconds=400.0), parameters)
+    assert named(identifier, parameters) is Component.CIRCULAR_SPLINE
+    assert sum(side.seconds for side in identifier.directions) == pytest.approx(360.0, abs=40.0)
+    forgetful = identify(swinging(seconds=400.0), settings_of(analysis__memory=60.0))
+    assert sum(side.seconds for side in forgetful.directions) < 80.0
+
+
 # What cannot be known -------------------------------------------------------------------------------------------------
 
 

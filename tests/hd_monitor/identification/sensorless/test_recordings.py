@@ -11,6 +11,7 @@ from tests.hd_monitor.identification.sensorless.runs import (
 from hd_monitor.diagnosis.limitations import describe_limitation
 from hd_monitor.diagnosis.status import status_of
 from hd_monitor.diagnosis.verdict import Component
+from hd_monitor.identification.sensorless.identifier import SensorlessIdentifier
 from hd_monitor.limitation import LimitationCode
 from hd_monitor.monitor import Monitor
 from hd_monitor.offline.identify_teeth import rank_tooth_pairs
@@ -71,12 +72,46 @@ def test_the_monitor_shows_joint_2_in_its_status(ur10e, file):
 
 @pytest.mark.shared_data
 @pytest.mark.parametrize(
-    ("file", "joint"), [(J5_ONLY, 5), *((file, joint) for file in (SHORT, LONG) for joint in range(3, 7))]
+    ("file", "joint"), [(J5_ONLY, 5), (SHORT, 3), (SHORT, 4), (SHORT, 5), *((LONG, joint) for joint in range(3, 7))]
 )
 def test_joints_whose_directions_do_not_agree_are_undetermined(ur10e, file, joint):
     identifier = identify(ur10e(file, joint), settings_of(**UR10E))
     assert named(identifier, settings_of(**UR10E)) is Component.UNDETERMINED
     assert identifier.estimate().blockers
+
+
+@pytest.mark.shared_data
+def test_what_the_recordings_bear_is_named(ur10e):
+    """A strong direction carries a weak one that agrees, as those of joint 1 do in nearly every recording."""
+    parameters = settings_of(**UR10E)
+    names = {(file, joint): named(identify(ur10e(file, joint), parameters), parameters) for file, joint in EVERY}
+    assert {key: name for key, name in names.items() if name is not Component.UNDETERMINED} == {
+        **{(file, 2): Component.CIRCULAR_SPLINE for file in (J2_ONLY, LOADED, SHORT, MIDDLE, LONG)},
+        **{(file, 1): Component.FLEXSPLINE for file in (J1_ONLY, MIDDLE, LONG)},
+        (SHORT, 6): Component.CIRCULAR_SPLINE,
+    }
+
+
+@pytest.mark.shared_data
+@pytest.mark.parametrize(
+    ("joint", "component"),
+    [
+        (1, Component.FLEXSPLINE),
+        (2, Component.CIRCULAR_SPLINE),
+        (3, Component.UNDETERMINED),
+        (4, Component.UNDETERMINED),
+        (5, Component.UNDETERMINED),
+        (6, Component.UNDETERMINED),
+    ],
+)
+def test_all_recordings_of_a_joint_add_up(ur10e, joint, component):
+    parameters = settings_of(**UR10E, analysis__memory=3600.0)
+    identifier = SensorlessIdentifier(parameters)
+    for file, number in EVERY:
+        if number == joint:
+            identifier.add(ur10e(file, joint))
+            identifier.cut()
+    assert named(identifier, parameters) is component
 
 
 @pytest.mark.shared_data
