@@ -18,8 +18,8 @@ import numpy as np
 from scipy import stats
 
 from hd_monitor.acquisition.record import JointSamples
-from hd_monitor.diagnosis.absence import WAITING
 from hd_monitor.arrays import FloatArray
+from hd_monitor.diagnosis.absence import WAITING
 from hd_monitor.diagnosis.judge import Judge
 from hd_monitor.diagnosis.verdict import Component
 from hd_monitor.identification.result import Identification
