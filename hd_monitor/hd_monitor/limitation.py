@@ -30,6 +30,7 @@ class LimitationCode(StrEnum):
     POSITION_STEPS = "position_steps"
     POSITION_JUMPS = "position_jumps"
     VIBRATION_STEPS = "vibration_steps"
+    VIBRATION_FOREIGN = "vibration_foreign"
     SENSOR_SILENT = "sensor_silent"
     EFFORT_HELD = "effort_held"
     EFFORT_NOISY = "effort_noisy"

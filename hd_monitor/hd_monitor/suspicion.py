@@ -8,9 +8,10 @@ import numpy as np
 from .acquisition.flaws import effort_flaw, motion_flaw, vibration_flaw
 from .acquisition.record import JointSamples, Record
 from .acquisition.recorder import AssembledPeriod
-from .identification.checks.stamps import compare_stamps, explained_share
+from .identification.checks.following import LineShares, line_shares
+from .identification.checks.stamps import compare_stamps
 from .identification.result import Identification
-from .limitation import Limitation, LimitationCode, doubt
+from .limitation import Limitation, LimitationCode, blocker, doubt
 from .settings import JointSettings
 
 RECENT = 16.0
@@ -19,6 +20,8 @@ RECENT = 16.0
 _TORQUE = {LimitationCode.TORQUE_TOO_SMALL, LimitationCode.TORQUE_TOO_LARGE}
 _FELL = 0.25  # of the level before: a quieter vibration is asked whether it still holds lines
 _HEARD, _UNHEARD = 0.5, 0.15  # part of the power that lines explain where a sensor hears the joint, and where not
+_DOUBTFUL = 0.0  # dB of signal to noise: the model explains less than half of the power
+_NEAR, _FOLLOWS = 0.05, 0.2  # part of the power near the lines, above noise's, and that of it that follows the angle
 _AS_FAST = 0.8  # of the speed before
 
 
@@ -57,10 +60,14 @@ class Suspicion:
         if (period := self._period) is None:
             return found
         flaw = doubt(LimitationCode.SENSOR_SILENT) if self._silent else vibration_flaw(period.vibration)
-        if not found.blockers:
-            return found if flaw is None else found.limited(flaw)
-        cause = flaw or self._cause(period.joint_samples, {limitation.code for limitation in found.blockers})
-        return found if cause is None else found.explained(cause)
+        cause = None
+        if found.blockers:
+            cause = flaw or self._cause(period.joint_samples, {limitation.code for limitation in found.blockers})
+        elif found.signal_to_noise < _DOUBTFUL:
+            cause = self._foreign()
+        if cause is not None:
+            return found.explained(cause)
+        return found if flaw is None else found.limited(flaw)
 
     def _cause(self, samples: JointSamples, codes: Set[LimitationCode]) -> Limitation | None:
         """Return what explains the limitations with these codes, by the last period's joint states or the stamps."""
@@ -68,8 +75,16 @@ class Suspicion:
         return (
             motion_flaw(samples, max(reducer.output_orders))
             or compare_stamps(self._recent, reducer, self._settings.dynamics, self._settings.analysis.harmonics)
+            or self._foreign()
             or (effort_flaw(samples) if codes & _TORQUE else None)
         )
+
+    def _foreign(self) -> Limitation | None:
+        """Return that what is near the lines does not follow the joint's angle, if so."""
+        by_window, throughout = self._shares(self._recent)
+        if by_window < _NEAR or throughout > _FOLLOWS * by_window:
+            return None
+        return blocker(LimitationCode.VIBRATION_FOREIGN)
 
     def _is_silent(self, newest: Sequence[Record]) -> bool:
         """Whether the newest records hold no lines although the joint moves as it did when it was heard."""
@@ -77,14 +92,15 @@ class Suspicion:
         if not self._silent:
             if not earlier or _typical(newest, "acceleration") > _FELL * _typical(earlier, "acceleration"):
                 return False
-            if _typical(newest, "speed") < _AS_FAST * _typical(earlier, "speed") or self._heard(earlier) < _HEARD:
+            if _typical(newest, "speed") < _AS_FAST * _typical(earlier, "speed"):
                 return False
-        return self._heard(newest) < _UNHEARD
+            if self._shares(earlier).by_window < _HEARD:
+                return False
+        return self._shares(newest).by_window < _UNHEARD
 
-    def _heard(self, records: Sequence[Record]) -> float:
-        return explained_share(
-            records, self._settings.reducer, self._settings.dynamics, self._settings.analysis.harmonics
-        )
+    def _shares(self, records: Sequence[Record]) -> LineShares:
+        settings = self._settings
+        return line_shares(records, settings.reducer, settings.dynamics, settings.analysis.harmonics)
 
 
 def _typical(records: Sequence[Record], name: str) -> float:

@@ -9,6 +9,7 @@ from tests.studies.spoiling import (
     Change,
     cut,
     degrees,
+    half_a_period_later,
     hole,
     joint,
     joint_twice,
@@ -40,6 +41,8 @@ class Fault:
         What is not as it should be yet: the cause is not named, or the fault goes unnoticed.
     rig, monitor : mapping
         Parameters of the simulator and of the monitor.
+    motion : mapping
+        Parameters of another rig, whose joint states are sent instead.
     blocks, joints : callable or None
         Change the messages with the vibration, and the joint states.
     storage, damage
@@ -51,6 +54,7 @@ class Fault:
     gap: str = ""
     rig: Mapping[str, Any] = field(default_factory=dict)
     monitor: Mapping[str, Any] = field(default_factory=dict)
+    motion: Mapping[str, Any] = field(default_factory=dict)
     blocks: Change | None = None
     joints: Change | None = None
     storage: str = "mcap"
@@ -141,6 +145,13 @@ FAULTS: dict[str, Fault] = {
     "driver ends": Fault(fault="joint states end after 6 s", joints=until(6.0, 100.0), cause="No joint states for"),
     "no sensor": Fault(fault="no sensor at all", blocks=until(0.0, 20.0), cause="vibration signal"),
     "two sensors": Fault(fault="two publishers of blocks", blocks=second_publisher, cause="two publishers"),
+    "half a period": Fault(
+        fault="two publishers of single samples, half a period apart",
+        rig=SAMPLES,
+        monitor=TAKES_SAMPLES,
+        blocks=half_a_period_later,
+        cause="publishers",
+    ),
     # Wrong messages
     "label": Fault(
         fault="blocks with another label", blocks=replaced(b"torsional_a", b"tangential_"), cause="labelled"
@@ -156,6 +167,17 @@ FAULTS: dict[str, Fault] = {
         cause="is not in joint_states",
     ),
     "joint twice": Fault(fault="the joint's name twice in a message", joints=joint_twice),
+    "mixed up": Fault(
+        fault="joint states of another joint, which turns steadily",
+        motion={"programme": "fixed"},
+        cause="of this joint",
+    ),
+    "mixed up too": Fault(
+        fault="vibration of a joint that turns steadily, joint states of one that swings",
+        rig={"programme": "fixed"},
+        motion={"programme": "strokes"},
+        cause="of this joint",
+    ),
     # Joint states
     "velocity 0": Fault(
         fault="velocities all 0", rig={"joint_states.velocity": "zero"}, cause="zero while the positions move"

@@ -73,10 +73,12 @@ def replayed(fault: Fault, defect: str) -> Said:
     inputs = Inputs(UNNAMED_JOINT, watched, monitor)
     changes = {Quantity.VIBRATION: fault.blocks, Quantity.MOTION: fault.joints}
     sent = dict.fromkeys(changes, 0)
-    for stretch in Simulation(rig):
-        messages = encode(stretch, rig, START)
+    other = RigSettings.from_mapping({**RIG, **fault.rig, **fault.motion})
+    for stretches in zip(Simulation(rig), Simulation(other), strict=True):
+        senders = dict(zip(changes, stretches, strict=True))  # the vibration's, and that of the joint states
         for quantity, change in changes.items():
-            topic = watched.sources[quantity].topic
+            topic, stretch = watched.sources[quantity].topic, senders[quantity]
+            messages = encode(stretch, rig, START)
             going_out = [messages[topic][row] for row in stretch.dispatch[topic].row.tolist()]
             if change is not None:
                 numbered = enumerate(going_out, sent[quantity])

@@ -74,6 +74,13 @@ def second_publisher(number: int, data: bytes) -> Sequence[bytes]:
     return [data, *samples(lambda values, _: np.negative(values, out=values))(number, data)]
 
 
+def half_a_period_later(number: int, data: bytes) -> Sequence[bytes]:
+    """Send each single sample of 1 kHz once more half a period later with the values of another sensor."""
+    (later,) = stamp(lambda time, _: time + NANOSECONDS // 2000)(number, data)
+    values = np.frombuffer(later, "<f8", 6, len(later) - 48)
+    return [data, later[:-48] + (-0.5 * values).tobytes()]
+
+
 def mains(values: FloatArray, number: int) -> None:
     values += 3.0 * np.cos(math.tau * 50.0 * (number * BLOCK_SIZE + np.arange(BLOCK_SIZE)) / 1000.0)
 

@@ -73,7 +73,7 @@ class Recorder:
     def __init__(self, settings: JointSettings) -> None:
         self._max_gap = settings.analysis.max_gap
         single = settings.input.source != "block"  # then the rate of the messages is that of the samples
-        self._shortest_period = 1.0 / (_FASTEST * settings.input.expected_rate) if single else 0.0
+        self._expected_period = 1.0 / settings.input.expected_rate if single else 0.0
         self._span = settings.analysis.period
         self._full_scale = settings.input.clipping_limit
         self._load = settings.load
@@ -217,11 +217,12 @@ class Recorder:
 
     def _misplaced(self, clock: Clock, values: FloatArray) -> str:
         """Say why the stamps do not show when samples were taken; empty if they do."""
-        if interleaved(values, clock.number, clock.burst):
-            return f"vibration samples of {clock.burst} publishers alternate: stop all publishers but one"
+        publishers = clock.burst if clock.burst > 1 else round(self._expected_period / clock.period)
+        if interleaved(values, clock.number, publishers):
+            return f"vibration samples of {publishers} publishers alternate: stop all publishers but one"
         steps = clock.number[1:] - clock.number[:-1]
         places = int(steps[(steps - 1) * clock.period <= self._max_gap].sum())
-        dense = clock.period < self._shortest_period and values.size * clock.period < _COVERED * self._span
+        dense = _FASTEST * clock.period < self._expected_period and values.size * clock.period < _COVERED * self._span
         if dense or places > _SPARSEST * values.size:
             return (
                 f"the stamps of the vibration samples are {1e6 * clock.period:.3g} µs apart, but not all the time: "

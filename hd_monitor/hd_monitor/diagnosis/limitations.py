@@ -90,6 +90,10 @@ SENTENCES: Mapping[LimitationCode, str] = {
         "the vibration comes in steps of {step:.2g} rad/s², {levels:.0f} of them in all, which hide the lines: choose "
         "a smaller range of the sensor"
     ),
+    LimitationCode.VIBRATION_FOREIGN: (
+        "The vibration near the lines does not follow the angle of this joint: check that the sensor is mounted on it, "
+        "that the joint states are its own and that the tooth numbers are right"
+    ),
     LimitationCode.SENSOR_SILENT: (
         "the sensor no longer hears the lines of this joint, although it moves as it did before: check the sensor and "
         "its mounting"

@@ -1,8 +1,6 @@
 """Whether the vibration fits the motion better at other times than their stamps say: two clocks, or a late stamp."""
 
-import math
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 from scipy import fft
@@ -12,32 +10,19 @@ from ...arrays import ComplexArray, FloatArray
 from ...limitation import Limitation, LimitationCode, blocker
 from ...model.parameters import Dynamics
 from ...reducer import Reducer
-
-WINDOW = 1.0
-"""Time [s] over which lines are correlated coherently: a clock that is 2 % wrong shifts little within it."""
+from .even import WINDOW, EvenSignal
 
 REACH, FASTEST = 2.5, 0.03
 """Delay [s] and relative error of a clock up to which they are looked for."""
 
 _RATE_STEP = 1e-3
-_RATE = 500.0  # Hz, to which faster signals are averaged, as far as their highest line lies a quarter below
 _RIDGE = 0.03  # of the lines' power: where a window does not separate the two
-_BAND = 0.8  # of half the sampling rate
 _LEAST_SECONDS = 3.0
 _LEAST_DELAY = 0.01  # s; less is fitted along
 _BETTER = 1.08  # explained power, over that with the stamps as they are, from which others are believed
 _MOST = 0.7  # of the vibration's power that must be explained then: chance explains less
 _CLEARLY = 1.08  # explained power with a clock of another rate, over the best that a delay alone explains
 _AS_GOOD = 0.6  # part of the best explained power at another delay, where less motion overlaps, that repeats it
-
-
-class _Signal(NamedTuple):
-    """Vibration [rad/s²] and motion [rad, rad/s] on one even grid, shape (N,), with its period [s]."""
-
-    vibration: FloatArray
-    angle: FloatArray
-    speed: FloatArray
-    period: float
 
 
 def compare_stamps(
@@ -58,11 +43,11 @@ def compare_stamps(
     harmonics : int
         Pairs of lines looked at.
     """
-    signal = _on_one_grid(records)
-    if signal is None or signal.vibration.size * signal.period < _LEAST_SECONDS:
+    signal = EvenSignal.of(records)
+    if signal is None or len(signal) * signal.period < _LEAST_SECONDS:
         return None
     # A clock of another rate shifts the oldest window further
-    reach = REACH + FASTEST * signal.vibration.size * signal.period
+    reach = REACH + FASTEST * len(signal) * signal.period
     explained = _explained(signal, reducer, dynamics, harmonics, reach)
     lags = signal.period * (np.arange(explained.shape[1]) - explained.shape[1] // 2)
     ages = WINDOW * (0.5 + np.arange(explained.shape[0])[::-1])  # of the windows' middles, from the newest on
@@ -75,8 +60,7 @@ def compare_stamps(
     drifts = best > _CLEARLY * float(steady.max())
     if not drifts:
         place, best = np.argmax(steady), float(steady.max())
-    whole = float(signal.vibration @ signal.vibration)
-    if best < max(_BETTER * as_stamped, _MOST * whole):
+    if best < max(_BETTER * as_stamped, _MOST * signal.power):
         return None
     if drifts:
         return blocker(LimitationCode.VIBRATION_CLOCK_RATE, percent=100.0 * rate)
@@ -89,70 +73,27 @@ def compare_stamps(
     return blocker(code, late=late, early=early, delay_ms=1e3 * abs(delay))
 
 
-def explained_share(records: Sequence[Record], reducer: Reducer, dynamics: Dynamics, harmonics: int) -> float:
-    """Return the part of the vibration's power that lines explain: about 1 if a sensor hears little else, 0 if none."""
-    signal = _on_one_grid(records)
-    if signal is None or not signal.vibration.any():
-        return 0.0
-    explained = _explained(signal, reducer, dynamics, harmonics, reach=0.0)
-    return float(explained.sum()) / float(signal.vibration @ signal.vibration)
-
-
-def _on_one_grid(records: Sequence[Record]) -> _Signal | None:
-    """Bring records onto one grid, 0 where the vibration is unknown."""
-    if not records:
-        return None
-    period, start = records[-1].period, records[0].start
-    times, angle, speed, vibration = (
-        np.concatenate([getattr(record, name) for record in records])
-        for name in ("times", "angle", "speed", "acceleration")
-    )
-    known = np.isfinite(vibration)
-    size = round((float(times[-1]) - start) / period) + 1
-    if not known.any() or not period * size <= 10.0 * period * times.size:
-        return None
-    even = np.zeros(size)
-    places = np.clip(np.rint((times[known] - start) / period).astype(np.intp), 0, size - 1)
-    even[places] = vibration[known] - float(np.mean(vibration[known]))
-    grid = start + period * np.arange(size)
-    signal = np.stack([even, np.interp(grid, times, angle), np.interp(grid, times, speed)])
-    together = max(1, int(1.0 / (period * _RATE)))
-    usable = size // together * together
-    signal = signal[:, size - usable :].reshape(3, -1, together).mean(axis=2)
-    vibration, angle, speed = signal
-    return _Signal(vibration, angle, speed, period * together)
-
-
-def _explained(signal: _Signal, reducer: Reducer, dynamics: Dynamics, harmonics: int, reach: float) -> FloatArray:
+def _explained(signal: EvenSignal, reducer: Reducer, dynamics: Dynamics, harmonics: int, reach: float) -> FloatArray:
     """Power that lines explain in each window at each delay up to `reach` [s] either way, shape (windows, delays)."""
-    width = min(round(WINDOW / signal.period), signal.vibration.size)
-    count, reach = signal.vibration.size // width, round(reach / signal.period)
-    size = count * width
-    vibration, angle, speed = (values[-size:] for values in signal[:3])
-    length = fft.next_fast_len(size + 2 * reach)
+    width, reach = round(WINDOW / signal.period), round(reach / signal.period)
+    count = len(signal) // width
+    size, skipped = count * width, len(signal) % width
+    length = fft.next_fast_len(len(signal) + 2 * reach)
     windows = np.zeros((count, length))
     for number in range(count):
-        part = slice(number * width, (number + 1) * width)
-        windows[number, part] = vibration[part]
+        part = slice(skipped + number * width, skipped + (number + 1) * width)
+        windows[number, part] = signal.vibration[part]
     spectra = fft.fft(windows)
-    frequency = fft.fftfreq(length, signal.period)
-    response = (frequency / dynamics.natural_frequency) ** 2 * dynamics.receptance(frequency)
-    first = np.arange(count)[:, None] * width + np.arange(2 * reach, -1, -1)
+    first = skipped + np.arange(0, size, width)[:, None] + np.arange(2 * reach, -1, -1)
+
+    def within(values: ComplexArray) -> ComplexArray:
+        sums = np.cumsum(np.pad(values, (reach + 1, 0)))
+        return np.asarray(sums[first + width] - sums[first])
+
     total = np.zeros((count, 2 * reach + 1))
-    for k in range(1, harmonics + 1):
-        products, lines = [], []
-        for order in reducer.output_orders:
-            seen = np.abs(k * order * speed) * signal.period < _BAND * math.pi
-            line = response * fft.fft(seen * np.exp(1j * k * order * angle), length)  # transients at resonance included
-            product = fft.ifft(spectra * line.conj())
-            products.append(np.roll(product, reach, axis=1)[:, : 2 * reach + 1])
-            lines.append(fft.ifft(line)[:size])
-
-        def within(values: ComplexArray) -> ComplexArray:
-            sums = np.cumsum(np.pad(values, (reach + 1, reach)))
-            return np.asarray(sums[first + width] - sums[first])
-
-        (one, two), (own, other) = lines, products
+    for pair in signal.lines(reducer, dynamics, harmonics, length=length):
+        own, other = (np.roll(fft.ifft(spectra * line.conj()), reach, axis=1)[:, : 2 * reach + 1] for line in pair)
+        one, two = (fft.ifft(line)[: len(signal) + reach] for line in pair)
         power, further = within(np.abs(one) ** 2).real, within(np.abs(two) ** 2).real
         floor = _RIDGE * (float(power.mean()) + float(further.mean()))
         power, further, shared = power + floor, further + floor, within(one.conj() * two)
