@@ -42,8 +42,8 @@ class LimitationCode(StrEnum):
     VIBRATION_CONSTANT = "vibration_constant"
     SEGMENT_UNUSABLE = "segment_unusable"
     # What the signal does not show
-    NATURAL_FREQUENCY_BEYOND_RATE = "natural_frequency_beyond_rate"
-    LINES_BEYOND_RATE = "lines_beyond_rate"
+    LINES_BEYOND_BANDWIDTH = "lines_beyond_bandwidth"
+    LINES_PARTLY_HEARD = "lines_partly_heard"
     TRAVEL_TOO_SHORT = "travel_too_short"
     MOTION_TOO_SHORT = "motion_too_short"
     LINES_TOO_WEAK = "lines_too_weak"
@@ -72,6 +72,7 @@ NOT_YET = frozenset(
     {
         LimitationCode.TRAVEL_TOO_SHORT,
         LimitationCode.MOTION_TOO_SHORT,
+        LimitationCode.LINES_PARTLY_HEARD,
         LimitationCode.LINES_TOO_WEAK,
         LimitationCode.NEAR_RESONANCE,
         LimitationCode.ONE_STROKE,

@@ -130,13 +130,14 @@ SENTENCES: Mapping[LimitationCode, str] = {
         "The vibration signal does not change at all while the joint turns: check the sensor"
     ),
     LimitationCode.SEGMENT_UNUSABLE: "The newest motion could not be used: {cause}",
-    LimitationCode.NATURAL_FREQUENCY_BEYOND_RATE: (
-        "The natural frequency given, {given_hz:g} Hz, is too high for {rate_hz:.0f} samples per second: sample "
-        "faster, or correct dynamics.natural_frequency"
+    LimitationCode.LINES_BEYOND_BANDWIDTH: (
+        "At {speed_rpm:.0f} rpm all lines lie beyond the {limit_hz:.0f} Hz that the sensor hears: sample faster, "
+        "correct input.bandwidth, or turn more slowly"
     ),
-    LimitationCode.LINES_BEYOND_RATE: (
-        "At {speed_rpm:.0f} rpm the lines are too high for {rate_hz:.0f} samples per second: sample faster, or turn "
-        "more slowly"
+    LimitationCode.LINES_PARTLY_HEARD: (
+        "At {speed_rpm:.0f} rpm the lines from the pair k = {k:.0f} on lie beyond the {limit_hz:.0f} Hz that the "
+        "sensor hears, so that a defect may hide in them: turn more slowly at times, sample faster, or look at the "
+        "first {heard:.0f} alone (analysis.harmonics)"
     ),
     LimitationCode.TRAVEL_TOO_SHORT: (
         "Only {travel_deg:.0f}° of output travel seen: at least {needed_deg:.0f}° are needed to separate the two "

@@ -54,6 +54,14 @@ class InputSettings:
         "QoS of the subscriptions; best_effort hears every publisher, reliable loses nothing but hears reliable "
         "publishers only",
     )
+    bandwidth: float = number(
+        0.0,
+        "Hz",
+        0.0,
+        100_000.0,
+        "frequency at which the accelerometer, with its anti-aliasing filter, attenuates by 3 dB; beyond it nothing "
+        "counts; 0: unknown, 0.4 of the sampling rate",
+    )
     clipping_limit: float = number(
         0.0,
         "rad/s²",

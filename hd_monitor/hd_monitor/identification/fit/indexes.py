@@ -70,12 +70,14 @@ def sizes_of(
     covariance : ndarray, shape (unknowns, unknowns)
         Of the errors by noise, which lift the sum of the squares.
     systematic : ndarray or None, shape (unknowns, unknowns)
-        Covariance of further errors, which widen the uncertainty but of whose sign nothing is known.
+        Covariance of further errors, which widen the uncertainty but do not lift the sum: what the data leave to the
+        prior, as lines that the sensor does not hear, and what the model leaves out.
 
     Notes
     -----
     For an estimate z of phasors β with covariance C, ``|z|² - tr C`` estimates |β|² without bias, and
-    ``4 z·C z - 2 tr C²`` the variance of that. The size is its root, 0 where it is negative. Its standard deviation
+    ``4 z·C z - 2 tr C²`` the variance of that. Further errors of covariance F add their mean square about |z|²,
+    ``4 z·F z + 2 tr F² + (tr F)²``. The size is the root, 0 where it is negative. Its standard deviation
     is the usual one far from zero; near zero it is taken such that the size plus its standard deviation is the root
     of |β|² plus *its* standard deviation, and that the 95 % interval holds 0 as long as noise alone explains |β|².
     """
@@ -87,7 +89,8 @@ def sizes_of(
         square = max(float(own_z @ own_z) - float(np.trace(own)), 0.0)
         noise = 2.0 * float(np.sum(own * own))
         variance = max(4.0 * float(own_z @ own @ own_z) - noise, noise)
-        variance += 4.0 * float(own_z @ further[part, part] @ own_z)
+        wide = further[part, part]
+        variance += 4.0 * float(own_z @ wide @ own_z) + 2.0 * float(np.sum(wide * wide)) + float(np.trace(wide)) ** 2
         root, deviation = math.sqrt(square), math.sqrt(variance)
         sizes.append(root)
         spread.append(deviation)

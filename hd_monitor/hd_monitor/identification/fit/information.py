@@ -64,13 +64,19 @@ class Information:
         """Return the direction in which the price of `values` falls."""
         return np.asarray(self.vector - self.matrix @ values)
 
-    def covariance(self, active: BoolArray) -> FloatArray:
+    def covariance(self, active: BoolArray, part: "Information | None" = None) -> FloatArray:
         """Covariance of the best values of the unknowns marked active; 0 for the others.
 
         Pieces that have faded weigh less than their worth, so this is not just the inverse of the information.
+
+        Parameters
+        ----------
+        active : ndarray of bool, shape (unknowns,)
+        part : Information, optional
+            That part of the information whose errors count alone; all of it unless given.
         """
         covariance = np.zeros(self.matrix.shape)
         place = np.ix_(active, active)
         inverse = np.linalg.pinv(self.matrix[place], rcond=1e-14, hermitian=True)
-        covariance[place] = inverse @ self.spread[place] @ inverse
+        covariance[place] = inverse @ (part or self).spread[place] @ inverse
         return covariance

@@ -73,8 +73,9 @@ class Predictor:
         """
         dynamics = self.unknowns.dynamics(self.given, values)
         omega, step = dynamics.angular_frequency, segment.period / segment.substeps
-        gauss = _Along(self, segment.at_gauss, values, dynamics)
-        nodes = _Along(self, segment.at_steps, values, dynamics)
+        limit = segment.low_pass.limit if segment.fastest > segment.low_pass.limit else math.inf
+        gauss = _Along(self, segment.at_gauss, values, dynamics, limit)
+        nodes = _Along(self, segment.at_steps, values, dynamics, limit)
         oscillator = Oscillator(dynamics, gauss.stiffness - 1.0, step)
         damping = 2.0 * dynamics.damping_ratio * omega
         spring = (omega**2 * nodes.stiffness)[:, None]
@@ -85,7 +86,7 @@ class Predictor:
         wound = force[0, 0] / spring[0, 0]
         base = oscillator.respond(inputs, initial=[[wound, 1.0, 0.0], [0.0, 0.0, omega]])
         motion = force - damping * base.velocity - spring * base.displacement
-        sampled = motion[:: segment.substeps]
+        sampled = segment.heard(motion)
         start, residual = _fit_free(segment, segment.acceleration - sampled[:, 0], sampled[:, 1:])
         mix = np.concatenate([[1.0], start])
         theta, theta_dot, theta_ddot = base.displacement @ mix, base.velocity @ mix, motion @ mix
@@ -96,18 +97,22 @@ class Predictor:
         jacobian -= damping * change.velocity
         jacobian -= spring * change.displacement
         return Linearisation(
-            residual=residual, predicted=sampled @ mix, jacobian=jacobian[:: segment.substeps], free=sampled[:, 1:]
+            residual=residual, predicted=sampled @ mix, jacobian=segment.heard(jacobian), free=sampled[:, 1:]
         )
 
 
 class _Along:
-    """The model's coefficients along a path, and the inputs of the sensitivities' equations."""
+    """The model's coefficients along a path, and the inputs of the sensitivities' equations.
 
-    def __init__(self, predictor: Predictor, path: Path, values: FloatArray, dynamics: Dynamics) -> None:
+    Of lines beyond `limit` [Hz] the sensor hears at most traces by their coupling with others, which are no evidence.
+    """
+
+    def __init__(self, predictor: Predictor, path: Path, values: FloatArray, dynamics: Dynamics, limit: float) -> None:
         self._unknowns = unknowns = predictor.unknowns
         self._path, self._dynamics = path, dynamics
         self._beta = values[unknowns.stiffness]
         self._lines = lines = path.lines_after(float(values[unknowns.delay]))
+        self._unheard = np.abs(path.speed)[..., None] * path.rates > math.tau * limit if limit < math.inf else None
         self._load_unit = predictor.reference_torque / predictor.given.inertia
         self._torque = math.exp(values[unknowns.torque]) / predictor.given.inertia * path.torque
         self.stiffness = np.asarray(1.0 + lines @ self._beta)
@@ -148,6 +153,10 @@ class _Along:
             errors -= (_ERROR_UNIT * damping * path.speed)[..., None] * path.slopes(self._lines)
             bending = damping * path.speed * self._error_bend
             forcing[..., unknowns.delay] += path.speed * (stiff * self._error_slope - bending)
+        if self._unheard is not None:
+            forcing[..., unknowns.stiffness][self._unheard] = 0.0
+            if self._errors:
+                forcing[..., unknowns.displacement][self._unheard] = 0.0
         return forcing
 
 

@@ -15,6 +15,7 @@ from ...orders.regression import line_columns
 from ...orders.tones import foreign_tones
 from ...reducer import Reducer
 from .decimation import decimate
+from .low_pass import LowPass
 from .path import Motion, Path, paths_along
 from .torque import own_acceleration, regress_torque
 
@@ -46,6 +47,8 @@ class Segment:
         Output angle [rad] and speed [rad/s].
     substeps : int
         Integration steps per sample period.
+    fastest : float
+        Highest frequency [Hz] of what is predicted.
     at_steps : Path
         The motion at the integration grid's points, shape (steps + 1,).
     at_gauss : Path
@@ -54,8 +57,8 @@ class Segment:
         Orthonormal directions of slow motion (0 where samples are left out), no part of the torsional vibration.
     highest_frequency : float
         Frequency [Hz] up to which the samples can be trusted.
-    raw_highest : float
-        Half the sensor's sampling rate [Hz].
+    low_pass : LowPass
+        What the sensor hears.
     raw_samples : int
         Samples of the sensor behind it.
     """
@@ -66,16 +69,23 @@ class Segment:
     angle: FloatArray
     speed: FloatArray
     substeps: int
+    fastest: float
     at_steps: Path
     at_gauss: Path
     slow: FloatArray
     highest_frequency: float
-    raw_highest: float
+    low_pass: LowPass
     raw_samples: int
 
     def __len__(self) -> int:
         """Return the number of samples, those left out included."""
         return int(self.acceleration.size)
+
+    def heard(self, predicted: FloatArray) -> FloatArray:
+        """What the sensor hears of accelerations on the integration grid, shape (steps + 1, columns): the samples."""
+        if self.low_pass.changes(self.fastest):
+            predicted = self.low_pass.heard(predicted, self.period / self.substeps)
+        return predicted[:: self.substeps]
 
     def mirrored(self) -> "Segment":
         """Return the segment as a sensor mounted the other way round would have recorded it."""
@@ -133,6 +143,8 @@ class SegmentBuilder:
         Whether the sensor also feels gravity, as an IMU does.
     keep_tones : bool
         Whether foreign tones are left in.
+    bandwidth : float
+        The sensor's -3 dB bandwidth [Hz]; 0 if unknown.
     """
 
     reducer: Reducer
@@ -141,6 +153,7 @@ class SegmentBuilder:
     natural_frequency: float
     inertial: bool = False
     keep_tones: bool = False
+    bandwidth: float = 0.0
 
     def build(self, records: Sequence[Record], torque: float | None) -> Segment:
         """Join successive records, each of which continues the one before it.
@@ -157,6 +170,7 @@ class SegmentBuilder:
             If the sampling rate is far too low for the lines and the natural frequency.
         """
         record = join_records(records)
+        low_pass = LowPass.of(self.bandwidth, 1.0 / record.period)
         raw, period = record.acceleration, record.period
         top_speed = float(np.abs(record.speed).max())
         line = (self.harmonics * self.reducer.output_orders.flexspline + _SIDE_ORDERS) * top_speed / math.tau
@@ -184,11 +198,12 @@ class SegmentBuilder:
             angle=angle,
             speed=speed,
             substeps=steps,
+            fastest=max(line, FREQUENCY_MARGIN * self.natural_frequency),
             at_steps=at_steps,
             at_gauss=at_gauss,
             slow=self._slow(motion, signal.values, signal.used),
-            highest_frequency=signal.highest_frequency,
-            raw_highest=0.5 / period,
+            highest_frequency=min(signal.highest_frequency, low_pass.limit),
+            low_pass=low_pass,
             raw_samples=int(np.isfinite(raw).sum()),
         )
 

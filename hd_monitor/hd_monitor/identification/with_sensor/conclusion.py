@@ -25,8 +25,9 @@ def conclude(context: Context, state: State, fit: Fit) -> Identification:
     u, reducer, residual, coverage = context.unknowns, context.settings.reducer, state.residual, state.coverage
     assert state.floor is not None
     values, information, unit = fit.values, context.known(state), state.setup.reference_torque
-    noise = state.inflation * information.covariance(state.active)
+    noise = state.inflation * information.covariance(state.active, state.information)
     systematic = _systematic(u, values, residual, coverage.span)
+    systematic += information.covariance(state.active, context.prior)  # what the data leave to the prior
     covariance = noise + systematic
     indexes = stiffness_indexes(u, values, noise, systematic)
     errors = transmission_errors(u, values, noise, systematic)

@@ -67,6 +67,7 @@ class Context:
             load_orders=unknowns.load_orders,
             natural_frequency=settings.dynamics.natural_frequency,
             inertial=settings.vibration.gravity,
+            bandwidth=settings.input.bandwidth,
         )
         prior = Information.gaussian(unknowns.given_std())
         return cls(settings=settings, unknowns=unknowns, prior=prior, builder=builder)

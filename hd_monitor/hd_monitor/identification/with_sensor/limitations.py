@@ -26,7 +26,6 @@ _NOTABLE = 0.1  # change of the logarithm of the indexes' ratio that matters
 _WIDENED = 2.25  # inflation of the variances that is worth mentioning
 _UNEXPLAINED = 0.15  # amplitude left at the lines, relative to what is explained, that forbids a name
 _WIND_UP = 0.25  # rad; no reducer takes it
-_BAND = 0.9  # of half the sampling rate
 _CORRECTED_FREQUENCY, _CORRECTED_DAMPING, _CORRECTED_TORQUE = 0.02, 0.3, 0.25
 _CORRECTED_DELAY = 1e-3  # s
 _CHANCE = 1e-3  # of noise alone to reach what counts as a line
@@ -45,25 +44,18 @@ def limitations_of(context: Context, state: State, fit: Fit, indexes: Indexes) -
             found.append(blocker(LimitationCode.LINES_UNEXPLAINED, unexplained_percent=percent))
         else:
             found.append(doubt(LimitationCode.UNCERTAINTY_WIDENED, factor=math.sqrt(state.inflation)))
-    missing = _out_of_band(context, state) or _missing(context, state, fit, indexes)
+    missing = _absurd(context, state) or _missing(context, state, fit, indexes)
     if missing is None and _is_fragile(context, state, fit, indexes, tests):
         missing = blocker(LimitationCode.NEAR_RESONANCE, given_hz=context.given.natural_frequency)
     return (*found, missing) if missing is not None else tuple(found)
 
 
-def _out_of_band(context: Context, state: State) -> Limitation | None:
-    """Return what the sensor's rate hides, or a torque that no reducer withstands."""
-    given, highest = context.given, state.recent[-1].raw_highest
-    rate, band = 2.0 * highest, _BAND * highest
-    if given.natural_frequency > band:
-        return blocker(LimitationCode.NATURAL_FREQUENCY_BEYOND_RATE, given_hz=given.natural_frequency, rate_hz=rate)
+def _absurd(context: Context, state: State) -> Limitation | None:
+    """Return that no reducer withstands the torque."""
     torque = state.setup.reference_torque
-    if torque > _WIND_UP * given.stiffness and not state.relative:
-        wind_up = math.degrees(torque / given.stiffness)
+    if torque > _WIND_UP * context.given.stiffness and not state.relative:
+        wind_up = math.degrees(torque / context.given.stiffness)
         return blocker(LimitationCode.TORQUE_ABSURD, torque_nm=torque, wind_up_deg=wind_up)
-    rpm = _mean_rpm(context, state)
-    if context.settings.reducer.line_frequencies(rpm).flexspline > band:
-        return blocker(LimitationCode.LINES_BEYOND_RATE, speed_rpm=rpm, rate_hz=rate)
     return None
 
 
@@ -81,13 +73,21 @@ def _missing(context: Context, state: State, fit: Fit, indexes: Indexes) -> Limi
     if coverage.time < _LEAST_MOTION:
         return blocker(LimitationCode.MOTION_TOO_SHORT, motion_s=coverage.time, needed_s=_LEAST_MOTION)
     scale = max(warn_index, *indexes.index) if state.relative else warn_index
-    if min(_index_std(context, state, fit, indexes)) <= _VAGUE * scale:
-        return blocker(LimitationCode.LINES_ABSENT) if _are_absent(context, state, fit) else None
-    return blocker(
-        LimitationCode.LINES_TOO_WEAK,
-        speed_rpm=_mean_rpm(context, state),
-        signal_to_noise_db=fit.signal_to_noise,
-    )
+    std, rpm, heard = _index_std(context, state, fit, indexes), _mean_rpm(context, state), _pairs_heard(context, state)
+    if heard < context.unknowns.harmonics and max(std) > _VAGUE * scale:
+        limit = state.recent[-1].low_pass.limit
+        if not heard:
+            return blocker(LimitationCode.LINES_BEYOND_BANDWIDTH, speed_rpm=rpm, limit_hz=limit)
+        return blocker(LimitationCode.LINES_PARTLY_HEARD, speed_rpm=rpm, limit_hz=limit, k=heard + 1, heard=heard)
+    if min(std) > _VAGUE * scale:
+        return blocker(LimitationCode.LINES_TOO_WEAK, speed_rpm=rpm, signal_to_noise_db=fit.signal_to_noise)
+    return blocker(LimitationCode.LINES_ABSENT) if _are_absent(context, state, fit) else None
+
+
+def _pairs_heard(context: Context, state: State) -> int:
+    """Line pairs within the sensor's bandwidth at the mean speed."""
+    highest = context.settings.reducer.line_frequencies(_mean_rpm(context, state)).flexspline
+    return math.floor(state.recent[-1].low_pass.limit / highest)
 
 
 def _are_absent(context: Context, state: State, fit: Fit) -> bool:
@@ -137,7 +137,9 @@ def _contradictions(context: Context, state: State, fit: Fit, tests: Mapping[int
         code = LimitationCode.MOTION_STAMPS_LAG if motion_lags else LimitationCode.VIBRATION_STAMPS_LAG
         yield doubt(code, delay_ms=1e3 * abs(float(values[u.delay])))
     test = tests[u.torque]
-    if not state.relative and test.significance > CONTRADICTION and abs(test.value) > _CORRECTED_TORQUE:
+    # What the lines' coupling says of the torque is wrong where lines are not heard
+    audible = _pairs_heard(context, state) >= u.harmonics
+    if audible and not state.relative and test.significance > CONTRADICTION and abs(test.value) > _CORRECTED_TORQUE:
         yield blocker(LimitationCode.TORQUE_TOO_SMALL if test.value > 0.0 else LimitationCode.TORQUE_TOO_LARGE)
 
 

@@ -79,3 +79,17 @@ def test_systematic_errors_widen_the_interval_and_leave_the_index():
         # the root of |β|² plus its standard deviation: at a tenth of the index 5 % below the usual one
         assert after == pytest.approx(np.hypot(before, 0.1 * index), rel=0.06)
     assert widened.correlation > 0.9 > 0.1 > abs(alone.correlation)
+
+
+def test_a_line_left_to_its_prior_is_not_zero_and_takes_nothing_from_the_others():
+    """The sensor hears all but the flexspline's third harmonic, of which nothing but its prior is known."""
+    values, prior_std = vector(0.02, 0.10), 0.3
+    values[UNKNOWNS.flexspline][[2, 5]] = 0.0
+    noise, prior = 1e-8 * np.eye(UNKNOWNS.size), np.zeros(UNKNOWNS.size)
+    prior[UNKNOWNS.flexspline][[2, 5]] = prior_std**2
+    heard = stiffness_indexes(UNKNOWNS, values, noise)
+    found = stiffness_indexes(UNKNOWNS, values, noise, np.diag(prior))
+    assert found.index == heard.index
+    assert found.std.circular_spline == heard.std.circular_spline
+    # its mean square adds to that of what is heard: index and deviation together reach it
+    assert found.index.flexspline + found.std.flexspline > np.hypot(heard.index.flexspline, np.sqrt(2.0) * prior_std)

@@ -32,7 +32,7 @@ def values_at_random(seed):
     return values
 
 
-def segment(acceleration):
+def segment(acceleration, builder=BUILDER):
     times = np.arange(acceleration.size) / RATE
     angle, speed, _ = motion(times)
     record = Record(
@@ -43,7 +43,7 @@ def segment(acceleration):
         speed=speed,
         torque=np.full(times.size, TORQUE),
     )
-    return BUILDER.build([record], None)
+    return builder.build([record], None)
 
 
 def test_prediction_agrees_with_an_adaptive_integrator():
