@@ -215,7 +215,11 @@ def type_name(schema: str, encoding: str) -> str:
 
 
 def string_at(body: bytes, at: int) -> tuple[str, int]:
-    """Read a string that its length precedes; return where it ends too."""
+    """Read a string that its length precedes; return where it ends too; raise a `DamageError` if it is cut off."""
+    if at + 4 > len(body):
+        raise DamageError("a string's length is missing")
     (length,) = struct.unpack_from("<I", body, at)
     end = at + 4 + length
+    if end > len(body):
+        raise DamageError(f"a string has {len(body) - at - 4} of {length} bytes")
     return body[at + 4 : end].decode(errors="replace"), end

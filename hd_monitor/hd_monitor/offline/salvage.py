@@ -98,7 +98,7 @@ class McapWalk(Walk):
                 elif code == Opcode.MESSAGE:
                     found = bare_message(body)
                 else:
-                    self._learn(code, body)
+                    self._learn(code, body, note)
                     continue
                 for channel, time, data in found:
                     if channel in self._topics:
@@ -115,16 +115,19 @@ class McapWalk(Walk):
         except DamageError as damage:
             note(str(damage))
 
-    def _learn(self, code: int, body: bytes) -> None:
+    def _learn(self, code: int, body: bytes, note: Note) -> None:
         """Keep what a record says of types or topics."""
-        if code == Opcode.SCHEMA and len(body) >= 6:
-            (number,) = struct.unpack_from("<H", body)
-            self._types[number], _ = string_at(body, 2)
-        elif code == Opcode.CHANNEL and len(body) >= 8:
-            number, schema = struct.unpack_from("<HH", body)
-            topic, end = string_at(body, 4)
-            encoding, _ = string_at(body, end)
-            self._topics[number] = topic, type_name(self._types.get(schema, ""), encoding)
+        try:
+            if code == Opcode.SCHEMA and len(body) >= 2:
+                (number,) = struct.unpack_from("<H", body)
+                self._types[number], _ = string_at(body, 2)
+            elif code == Opcode.CHANNEL and len(body) >= 4:
+                number, schema = struct.unpack_from("<HH", body)
+                topic, end = string_at(body, 4)
+                encoding, _ = string_at(body, end)
+                self._topics[number] = topic, type_name(self._types.get(schema, ""), encoding)
+        except DamageError as damage:
+            note(f"{self._name}: a record of topics or types is damaged ({damage})")
 
     def _chunk(self, body: bytes, note: Note) -> Iterator[tuple[int, int, bytes]]:
         try:
@@ -141,7 +144,7 @@ class McapWalk(Walk):
             content = content[:size]
         records = Records.parse(content)
         for code, part in records.others():
-            self._learn(code, part)
+            self._learn(code, part, note)
         for some in records.messages.in_order().stretches():
             yield from zip(some.channels.tolist(), some.times.tolist(), some.data(), strict=True)
 

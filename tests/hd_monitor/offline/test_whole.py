@@ -190,6 +190,15 @@ def test_a_file_without_chunks_is_walked_through(tmp_path: Path) -> None:
     assert not notes
 
 
+def test_a_topic_whose_record_is_damaged_is_noted_and_costs_no_other(tmp_path: Path) -> None:
+    path = mcap_files.write(tmp_path / "x.mcap", [some(0, 9), some(50, 9, 2)], TOPICS)
+    whole = by_us(path, ["/a"])[0]
+    path.write_bytes(path.read_bytes().replace(b"/b\x03\0\0\0cdr", b"/b\xff\xff\0\0cdr"))
+    rows, notes = by_us(path)
+    assert rows == whole
+    assert any("topics or types is damaged" in note for note in notes)
+
+
 def test_a_file_without_message_indexes_is_read_all_the_same(tmp_path: Path) -> None:
     plain = mcap_files.write(tmp_path / "plain.mcap", [some(0, 9), some(50, 9, 2)], TOPICS)
     bare = mcap_files.write(tmp_path / "bare.mcap", [some(0, 9), some(50, 9, 2)], TOPICS, indexed=False)
