@@ -1,6 +1,7 @@
 """What a joint's monitor has gathered: identification, RMS curve and the newest steady segment."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -11,6 +12,7 @@ from .acquisition.recorder import AssembledPeriod
 from .arrays import FloatArray
 from .identification.identifier import Identifier
 from .identification.result import Identification
+from .identification.sensorless.agreement import DirectionEvidence
 from .identification.sensorless.identifier import SensorlessIdentifier
 from .limitation import Limitation
 from .orders.rms_curve import RmsAccumulator, SpeedBin
@@ -23,9 +25,20 @@ _SLOW_DEGREE = 5  # of the polynomial that removes gravity and rigid motion from
 SomeIdentifier = Identifier | SensorlessIdentifier
 
 
-def new_identifier(settings: JointSettings, *, sparing: bool = True) -> SomeIdentifier:
-    """Return an identifier without evidence; a `sparing` one looks at part of the motion once it knows enough."""
-    return SensorlessIdentifier(settings) if settings.sensorless else Identifier(settings, sparing=sparing)
+def new_identifier(
+    settings: JointSettings, *, sparing: bool = True, known: Sequence[tuple[DirectionEvidence, ...]] = ()
+) -> SomeIdentifier:
+    """Return an identifier without evidence of its own.
+
+    Parameters
+    ----------
+    settings : JointSettings
+    sparing : bool
+        Whether to look at part of the motion once it knows enough.
+    known : sequence of tuple of DirectionEvidence
+        Evidence of earlier motion, from joint states alone; with a sensor the estimate starts anew.
+    """
+    return SensorlessIdentifier(settings, known) if settings.sensorless else Identifier(settings, sparing=sparing)
 
 
 def end_recording(identifier: SomeIdentifier) -> None:

@@ -47,7 +47,7 @@ def everything_known() -> Assessment:
     )
     nothing = Monitor(JointSettings.from_mapping()).silence(0)
     quality = replace(nothing.quality, rate=1000.0)
-    extra = (("internal errors", "1"),)
+    extra = (("internal errors", "1"), ("evidence age (s)", "60"))
     return replace(nothing, identification=found, quality=quality, speed=850.0, rms=1.0, extra=extra)
 
 

@@ -3,10 +3,12 @@
 import argparse
 import json
 import sys
+from contextlib import nullcontext
 from pathlib import Path
 
 from ..diagnosis.verdict import Level
 from ..errors import ParameterError
+from ..history.ledger import Ledger
 from ..offline.compression import CHUNK_LIMIT
 from ..offline.output import check_file, check_folder, write_file
 from ..offline.parameters import load_parameters, parse_override
@@ -28,6 +30,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     add_input_arguments(parser)
     parser.add_argument("--report", type=Path, metavar="DIR", help="write an HTML page with plots into this folder")
+    parser.add_argument("--history", type=Path, metavar="FILE", help="write what was found to this ledger")
     parser.add_argument(
         "--fail-on", choices=sorted(_FAIL_ON), help="exit with status 1 if a joint's last verdict is this bad or worse"
     )
@@ -94,7 +97,8 @@ def _mebibytes(text: str) -> int:
 def run(arguments: argparse.Namespace) -> int:
     """Replay the bags; return the exit status."""
     check_outputs(arguments)
-    outcome = replay_bags(arguments.bags, request_from(arguments), for_report=bool(arguments.report))
+    with Ledger(arguments.history) if arguments.history else nullcontext() as ledger:
+        outcome = replay_bags(arguments.bags, request_from(arguments), for_report=bool(arguments.report), ledger=ledger)
     for note in outcome.notes:
         print(f"hd-monitor replay: {note}", file=sys.stderr)
     text = sys.stderr if arguments.json == "-" else sys.stdout

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..assessment import Assessment
 from ..evidence import SomeIdentifier, end_recording, new_identifier
+from ..history.diary import Diary
+from ..history.ledger import Ledger
 from .bag import Bag
 from .errors import BagError
 from .plan import JointPlan, Request, check_same_settings, plan
@@ -47,6 +49,20 @@ def run(
     return list(results.values())
 
 
+def _listener(
+    joint: str, collectors: Mapping[str, "Collector"], diaries: Mapping[str, Diary], ledger: Ledger | None
+) -> Callable[[Assessment], None]:
+    """Return what is told of every assessment of a joint."""
+
+    def listen(assessment: Assessment) -> None:
+        if joint in collectors:
+            collectors[joint].add(assessment)
+        if ledger is not None and (entry := diaries[joint].note(assessment)):
+            ledger.append(entry)
+
+    return listen
+
+
 def _collectors(plans: Sequence[JointPlan]) -> dict[str, "Collector"]:
     from .report.collector import Collector  # a plain replay needs none of it
 
@@ -63,7 +79,7 @@ def replay_bags(
     request: Request,
     *,
     for_report: bool = False,
-    listen: Callable[[Path, JointResult], None] = lambda path, result: None,
+    ledger: Ledger | None = None,
 ) -> Outcome:
     """Replay recordings as one history of the arm: each goes on with the evidence of those before it.
 
@@ -74,8 +90,8 @@ def replay_bags(
     request : Request
     for_report : bool
         Whether to collect what the report draws.
-    listen : callable
-        Told what each recording gave of each joint, once it is through.
+    ledger : Ledger, optional
+        Where each recording gets its entries.
 
     Raises
     ------
@@ -100,15 +116,17 @@ def replay_bags(
                     identifiers.setdefault(item.joint, new_identifier(item.settings))
                 if for_report:
                     collectors = _collectors(plans) | collectors
-                found = run(bag, plans, {joint: collector.add for joint, collector in collectors.items()}, identifiers)
+                diaries = {item.joint: Diary(item.joint, item.settings.history.interval, str(path)) for item in plans}
+                listeners = {item.joint: _listener(item.joint, collectors, diaries, ledger) for item in plans}
+                found = run(bag, plans, listeners, identifiers)
                 notes += [before + note for note in bag.notes]
         except BagError as error:
             raise error if str(path) in str(error) or not before else BagError(before + str(error)) from None
         for result in found:
             if result.unusable:
                 complaints.append(before + result.unusable)
-            else:
-                listen(path, result)
+            elif ledger and result.last and (entry := diaries[result.plan.joint].close(result.last)):
+                ledger.append(entry)
             end_recording(identifiers[result.plan.joint])
             known = histories.get(result.plan.joint)
             histories[result.plan.joint] = result if known is None else known.followed_by(result)

@@ -10,6 +10,7 @@ from .. import contract
 from ..settings import JointSettings
 from ..sources import Quantity
 from .joint_watch import JointWatch
+from .memory import Memory
 from .messages import rms_message, zoom_message
 from .queue import most_messages, queue_depth
 from .subscriptions import DrainedSubscription
@@ -46,7 +47,8 @@ class JointChannel:
         self._zoom = self._advertise(contract.ZOOM_SPECTRUM)
         self._rms = self._advertise(contract.RMS_CURVE)
         self.joint = joint
-        self.watch = JointWatch(joint, settings, now, self._explain, self._explain_crowd)
+        memory = Memory(joint, settings, node.get_logger().error) if settings.history.path else None
+        self.watch = JointWatch(joint, settings, now, self._explain, self._explain_crowd, memory, self._date)
 
     def _advertise(self, topic: str) -> LifecyclePublisher:
         publisher: LifecyclePublisher = self._node.create_lifecycle_publisher(
@@ -92,7 +94,8 @@ class JointChannel:
         self._motion = None
 
     def destroy(self) -> None:
-        """Destroy the publishers."""
+        """Destroy the publishers, and close the ledger."""
+        self.watch.close()
         self._node.destroy_lifecycle_publisher(self._zoom)
         self._node.destroy_lifecycle_publisher(self._rms)
 
@@ -102,6 +105,9 @@ class JointChannel:
         messages |= {quantity: subscription.drain() for quantity, subscription in self._subscriptions.items()}
         if self.watch.feed(messages, now):
             self._publish_curves()
+
+    def _date(self) -> float:
+        return float(self._node.get_clock().now().nanoseconds) / contract.NANOSECONDS
 
     def _explain(self, quantity: Quantity) -> str:
         subscription = self._subscriptions.get(quantity, self._motion)

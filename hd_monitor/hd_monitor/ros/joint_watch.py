@@ -14,15 +14,19 @@ from ..diagnosis.absence import (
     Explain,
     internal_error,
     lost_by_clock,
+    remembered,
     stamped_by_two_clocks,
 )
 from ..diagnosis.status import Status, status_of
 from ..diagnosis.verdict import FaultCode, Verdict
-from ..errors import HdMonitorError
+from ..errors import HdMonitorError, ParameterError
+from ..evidence import new_identifier
+from ..history.entry import Kind
 from ..monitor import Monitor
 from ..orders.zoom import ZoomSpectrum
 from ..settings import JointSettings
 from ..sources import Quantity
+from .memory import Memory
 
 
 class JointWatch:
@@ -39,6 +43,11 @@ class JointWatch:
     explain_crowd : callable
         Asked which inputs have several publishers; the answer is added to what the status says.
 
+    memory : Memory, optional
+        What is remembered of earlier runs.
+    date : callable
+        The time [s] by the messages' clock.
+
     Attributes
     ----------
     present : Assessment
@@ -50,24 +59,35 @@ class JointWatch:
     """
 
     def __init__(
-        self, joint: str, settings: JointSettings, now: int, explain: Explain, explain_crowd: Callable[[], str]
+        self,
+        joint: str,
+        settings: JointSettings,
+        now: int,
+        explain: Explain,
+        explain_crowd: Callable[[], str],
+        memory: Memory | None = None,
+        date: Callable[[], float] = lambda: 0.0,
     ) -> None:
         self.joint = joint
         self.settings = settings
         self._explain = explain
         self._explain_crowd = explain_crowd
+        self._memory = memory
+        self._date = date
+        self._remembered = memory.last if memory is not None else None
         self.errors = 0
         self.last_error = ""
         self._presence = Presence(settings.sources, round(settings.input.timeout * NANOSECONDS))
         self._assessed = False
         self._start()
         self.wake(now)
-        self.present = self._other(now, WAITING)
+        self.present = self._recalled(self._other(now, WAITING))
         self._told = self._key()
         self._transitions: list[Status] = []
 
     def _start(self) -> None:
-        self._monitor = Monitor(self.settings)
+        known = self._memory.evidence if self._memory is not None else ()
+        self._monitor = Monitor(self.settings, new_identifier(self.settings, known=known))
         self._inputs = Inputs(self.joint, self.settings, self._monitor)
 
     def wake(self, now: int) -> None:
@@ -89,6 +109,8 @@ class JointWatch:
             assessments = self._monitor.advance()
             for assessment in assessments:
                 self._show(self._explained(assessment, now))
+                if self._memory is not None:
+                    self._memory.note(assessment)
         except Exception as error:
             self._fail(error, now)
             return False
@@ -140,8 +162,26 @@ class JointWatch:
         self._monitor.reset_latch()
 
     def reset(self) -> None:
-        """Forget all evidence."""
+        """Forget all evidence: the reducer was exchanged."""
         self._monitor.reset()
+        self._remembered = None
+        self.mark(Kind.EXCHANGE)
+
+    def set_baseline(self) -> None:
+        """Declare the reducer to be as it should be from here on."""
+        if self._memory is None:
+            raise ParameterError("history.path is empty, so that no baseline can be kept; set it to a file")
+        self.mark(Kind.BASELINE)
+
+    def mark(self, kind: Kind) -> None:
+        """Note an exchange or a baseline in the ledger, if there is one."""
+        if self._memory is not None:
+            self._memory.mark(kind, max(self._monitor.newest_stamps.values(), default=0) / NANOSECONDS)
+
+    def close(self) -> None:
+        """Write what the ledger does not have yet."""
+        if self._memory is not None:
+            self._memory.close()
 
     # ----------------------------------------------------------------------------------------------------------------
 
@@ -164,7 +204,19 @@ class JointWatch:
         """Make an assessment that the monitor knows nothing of, with all that it knows."""
         return replace(self._monitor.silence(now), verdict=verdict)
 
+    def _recalled(self, assessment: Assessment) -> Assessment:
+        """Put the last verdict of an earlier run, with its age, in the place of none yet."""
+        known = self._remembered
+        if known is None or known.verdict is None or assessment.verdict.fault_code is not FaultCode.WAITING:
+            return assessment
+        age = max(self._date() - known.time, 0.0)
+        verdict = remembered(known.verdict, age, assessment.verdict)
+        return replace(assessment, verdict=verdict, extra=(*assessment.extra, ("evidence age (s)", f"{age:.0f}")))
+
     def _show(self, assessment: Assessment) -> None:
+        if assessment.identification is not None and assessment.verdict.fault_code is not FaultCode.WAITING:
+            self._remembered = None
+        assessment = self._recalled(assessment)
         if self.errors:
             assessment = replace(assessment, extra=(*assessment.extra, ("internal errors", str(self.errors))))
         if crowd := self._explain_crowd():

@@ -70,10 +70,12 @@ class HdMonitorNode(ManagedNode):
             return self.refuse(error)
         self._offer("~/reset_latch", "reset_latch", self._channels)
         self._offer("~/reset", "reset", self._channels)
+        self._offer("~/set_baseline", "set_baseline", self._channels)
         if several:
             for channel in self._channels:
                 self._offer(f"~/{channel.joint}/reset_latch", "reset_latch", [channel])
                 self._offer(f"~/{channel.joint}/reset", "reset", [channel])
+                self._offer(f"~/{channel.joint}/set_baseline", "set_baseline", [channel])
         return super().on_configure(state)
 
     @logged
@@ -117,6 +119,12 @@ class HdMonitorNode(ManagedNode):
         for channel in self._channels:
             channel.destroy()
         self._channels = []
+
+    def destroy_node(self) -> None:
+        """Leave; what the ledger does not have yet is written first."""
+        for channel in self._channels:
+            channel.watch.close()
+        super().destroy_node()
 
     # Work -----------------------------------------------------------------------------------------------------------
 

@@ -191,6 +191,14 @@ class DiagnosisSettings:
             )
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HistorySettings:
+    """The parameters ``history.*``."""
+
+    path: str = plain("", "file of the ledger, which remembers every reducer by its serial number; empty: none")
+    interval: float = number(300.0, "s", 1.0, 1e6, "time of motion from one entry of the ledger to the next")
+
+
 PARAMETERS = (
     *table(
         "reducer.",
@@ -221,6 +229,7 @@ PARAMETERS = (
     *parameters_of(LoadSettings, "load."),
     *parameters_of(AnalysisSettings, "analysis."),
     *parameters_of(DiagnosisSettings, "diagnosis."),
+    *parameters_of(HistorySettings, "history."),
 )
 """Parameters of a joint."""
 

@@ -9,7 +9,7 @@ from ..model.parameters import Dynamics
 from ..parameter import Value, check_all, fill_group
 from ..reducer import Reducer
 from ..sources import INPUT_SOURCES, JOINT_STATES, LOAD_SOURCES, Quantity, Source
-from .groups import PARAMETERS, AnalysisSettings, DiagnosisSettings, InputSettings, LoadSettings
+from .groups import PARAMETERS, AnalysisSettings, DiagnosisSettings, HistorySettings, InputSettings, LoadSettings
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -33,6 +33,7 @@ class JointSettings:
     load: LoadSettings
     analysis: AnalysisSettings
     diagnosis: DiagnosisSettings
+    history: HistorySettings
 
     @classmethod
     def from_mapping(cls, given: Mapping[str, Any] | None = None) -> Self:
@@ -60,6 +61,7 @@ class JointSettings:
             load=fill_group(values, "load", LoadSettings),
             analysis=fill_group(values, "analysis", AnalysisSettings),
             diagnosis=fill_group(values, "diagnosis", DiagnosisSettings),
+            history=fill_group(values, "history", HistorySettings),
         )
 
     @property

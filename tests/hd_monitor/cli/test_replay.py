@@ -12,6 +12,8 @@ import pytest
 from tests.hd_monitor.offline import recordings as rec
 
 from hd_monitor.cli.main import main
+from hd_monitor.history.entry import Kind
+from hd_monitor.history.ledger import Ledger
 
 
 @pytest.fixture(scope="module")
@@ -278,3 +280,25 @@ def test_a_history_names_the_recording_that_cannot_be_used(
     still = rec.write(tmp_path / "still", [event for event in rec.small(3.0) if event.topic == "/joint_states"])
     assert main(["replay", str(recording), str(still)]) == 2
     assert str(still) in capsys.readouterr().err
+
+
+def test_a_replay_writes_to_the_ledger(recording: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "ledger.sqlite"
+    given = ("--history", str(file), "-p", "reducer.serial:=S1", "-p", "history.interval:=5.0")
+    for _ in range(2):  # a second time takes the place of the first
+        assert main(["replay", str(recording), *given]) == 0
+    with Ledger(file) as ledger:
+        entries = ledger.entries("S1")
+    assert {entry.recording for entry in entries} == {str(recording)}
+    kinds = [entry.kind for entry in entries]
+    assert kinds.count(Kind.EVIDENCE) == 2
+    last = entries[-1]
+    assert last.verdict is not None
+    assert last.verdict.component.value == "flexspline"
+    assert last.index is not None
+    assert last.index.flexspline == pytest.approx(math.hypot(0.09, 0.04, 0.03), abs=0.002)
+    assert [line.k for line in last.lines] == [1, 2, 3]
+    assert sum(entry.revolutions for entry in entries) == pytest.approx(1200 / 60 * 12, abs=30.0)
+    assert last.speed == pytest.approx(1200.0, abs=2.0)
+    assert main(["replay", str(recording), "--history", str(tmp_path)]) == 3
+    assert "cannot be opened" in capsys.readouterr().err

@@ -47,6 +47,8 @@ class SensorlessIdentifier:
     ----------
     settings : JointSettings
         With ``input.source`` ``joint_effort`` or ``joint_velocity``.
+    known : sequence of tuple of DirectionEvidence
+        Evidence of earlier motion of this reducer, the oldest first.
 
     Notes
     -----
@@ -74,7 +76,7 @@ class SensorlessIdentifier:
     (0.3, True, ())
     """
 
-    def __init__(self, settings: JointSettings) -> None:
+    def __init__(self, settings: JointSettings, known: Sequence[tuple[DirectionEvidence, ...]] = ()) -> None:
         self._settings = settings
         reduction, (cs, fs) = settings.reducer.reduction, settings.reducer.output_orders
         motor = (reduction, 2.0 * reduction)
@@ -85,12 +87,13 @@ class SensorlessIdentifier:
         self._cutter = JointSegmentCutter(settings.input.source, (cs, fs), minimum_speed)
         around = [surroundings(candidates, motor) for candidates in (self._candidates, doubled) if candidates]
         self._pool = SegmentPool([*orders, *around], min(settings.analysis.memory, COHERENT))
-        self._closed: deque[_Closed] = deque()
+        self._closed = deque(_Closed(pieces, (), _seconds(pieces)) for pieces in known)
         self._messages = 0
         self._usable = 0
         self._latest: Identification | None = None
         self._directions: tuple[DirectionEvidence, ...] = ()
-        self._stale = False
+        self._stale = bool(self._closed)
+        self._forget()
 
     @property
     def directions(self) -> tuple[DirectionEvidence, ...]:
@@ -138,6 +141,9 @@ class SensorlessIdentifier:
         if evidence := tuple(self._present()):
             self._closed.append(_Closed(evidence, self._questioned_teeth(), self._pool.seconds))
         self._pool.clear()
+        self._forget()
+
+    def _forget(self) -> None:
         held = sum(closed.seconds for closed in self._closed)
         while self._closed and held - self._closed[0].seconds >= self._settings.analysis.memory:
             held -= self._closed.popleft().seconds
@@ -246,6 +252,11 @@ def _lines(evidence: Sequence[DirectionEvidence]) -> Iterator[LineEstimate]:
         mean, covariance = _mean_amplitudes(by_direction([piece for piece in evidence if piece.k == k]))
         std = np.sqrt(np.diag(covariance))
         yield LineEstimate(k=k, amplitude=LinePair(*mean.tolist()), std=LinePair(*std.tolist()))
+
+
+def _seconds(pieces: Sequence[DirectionEvidence]) -> float:
+    """Motion behind pieces of evidence [s]."""
+    return sum(piece.seconds for piece in pieces if piece.k == 1)
 
 
 def _mean_amplitudes(directions: Sequence[DirectionEvidence]) -> tuple[FloatArray, FloatArray]:

@@ -1,0 +1,130 @@
+"""What a node remembers over a restart, an exchange and a ledger that fails."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from tests.hd_monitor.ros.test_joint_watch import alone, explain
+
+from hd_monitor.history.entry import Kind
+from hd_monitor.history.ledger import Ledger
+from hd_monitor.ros.joint_watch import JointWatch
+from hd_monitor.ros.memory import Memory
+from hd_monitor.settings import JointSettings
+from hd_monitor.sources import Quantity
+
+pytestmark = pytest.mark.ros
+
+SECOND = 1_000_000_000
+DAY = 86_400.0
+
+Feed = Callable[[float, float], list[bytes]]
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    return tmp_path / "ledger.sqlite"
+
+
+@pytest.fixture
+def complaints() -> list[str]:
+    return []
+
+
+@pytest.fixture
+def start_watch(path: Path, complaints: list[str]) -> Callable[..., JointWatch]:
+    def start(date: float, serial: str = "A1", **parameters: Any) -> JointWatch:
+        given = {"input.source": "joint_effort", "history.path": str(path), "reducer.serial": serial}
+        settings = JointSettings.from_mapping(given | {k.replace("__", "."): v for k, v in parameters.items()})
+        memory = Memory("elbow", settings, complaints.append)
+        return JointWatch("elbow", settings, SECOND, explain, alone, memory, lambda: date)
+
+    return start
+
+
+def swing(watch: JointWatch, start: float, seconds: float, line: float = 0.3) -> None:
+    """Let the joint swing; the circular spline's line is in its effort."""
+    from rclpy.serialization import serialize_message
+    from sensor_msgs.msg import JointState
+
+    times = np.arange(0.0, seconds, 0.01)
+    angle = 1.4 * np.sin(0.55 * times) + 0.2 * np.sin(1.3 * times)
+    speed = 0.77 * np.cos(0.55 * times) + 0.26 * np.cos(1.3 * times)
+    noise = np.random.default_rng(1).standard_normal(times.size)
+    effort = 4.0 * np.sin(angle) + line * np.cos(160 * angle) + 0.1 * noise
+    messages = []
+    for at, where, pace, pull in zip(times, angle, speed, effort, strict=True):
+        message = JointState(name=["elbow"], position=[where], velocity=[pace], effort=[pull])
+        message.header.stamp.sec = int(start + at)
+        message.header.stamp.nanosec = round((start + at) % 1 * SECOND)
+        messages.append(serialize_message(message))
+    for first in range(0, len(messages), 100):
+        watch.feed({Quantity.MOTION: messages[first : first + 100]}, round((1.0 + first / 100) * SECOND))
+
+
+def test_a_restart_shows_the_last_verdict_with_its_age(start_watch: Callable[..., JointWatch]) -> None:
+    watch = start_watch(DAY)
+    assert watch.status().value("fault_code") == "HD_WAITING"
+    swing(watch, DAY, 60.0)
+    assert watch.status().value("component") == "circular_spline"
+    watch.close()
+    status = start_watch(DAY + 60.0 + 7200.0).status()
+    assert status.value("component") == "circular_spline"
+    assert float(status.value("evidence age (s)")) == pytest.approx(7200.0, abs=2.0)
+    assert "(last verdict, 2 hours ago; now: Nothing has been received so far" in status.message
+
+
+def test_a_restart_goes_on_with_the_evidence(start_watch: Callable[..., JointWatch]) -> None:
+    watch = start_watch(DAY)
+    swing(watch, DAY, 60.0)
+    watch.close()
+    for serial, known in (("A1", "circular_spline"), ("B2", "undetermined")):
+        again = start_watch(2 * DAY, serial)
+        swing(again, 2 * DAY, 5.0)
+        assert again.present.verdict.component == known
+        assert ("evidence age (s)" in dict(again.status().values)) is False
+
+
+def test_the_ledger_gets_an_entry_each_interval_and_at_each_transition(
+    start_watch: Callable[..., JointWatch], path: Path
+) -> None:
+    watch = start_watch(DAY, history__interval=20.0)
+    swing(watch, DAY, 70.0)
+    with Ledger(path) as ledger:
+        kinds = [entry.kind for entry in ledger.entries("A1")]
+        assert kinds.count(Kind.EVIDENCE) >= 2
+        assert kinds.count(Kind.TRANSITION) >= 1
+        newest = ledger.entries("A1")[-1]
+        watch.close()
+        entries = ledger.entries("A1")
+    assert entries[-1].time > newest.time
+    assert sum(entry.seconds for entry in entries) == pytest.approx(66.0, abs=6.0)
+    assert entries[-1].evidence
+    assert entries[-1].lines[0].amplitude.circular_spline == pytest.approx(0.3, abs=0.03)
+
+
+def test_a_reset_marks_an_exchange(start_watch: Callable[..., JointWatch], path: Path) -> None:
+    watch = start_watch(DAY)
+    swing(watch, DAY, 60.0)
+    watch.reset()
+    with Ledger(path) as ledger:
+        assert ledger.entries("A1") == []
+    watch.close()
+    assert start_watch(2 * DAY).status().value("fault_code") == "HD_WAITING"
+
+
+def test_a_ledger_that_cannot_be_opened_costs_no_verdict(
+    start_watch: Callable[..., JointWatch], path: Path, complaints: list[str]
+) -> None:
+    path.mkdir()
+    watch = start_watch(DAY)
+    swing(watch, DAY, 60.0)
+    watch.reset_latch()
+    assert watch.status().value("component") == "circular_spline"
+    watch.reset()
+    watch.close()
+    (complaint,) = complaints
+    assert complaint.startswith("elbow: the history is not kept: ")
+    assert "cannot be opened" in complaint
