@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 COMMANDS = {
     "replay": "put a recorded bag through the same core, with JSON and a report",
     "compare": "compare two bags or two JSON results: what changed",
+    "history": "show what the ledger knows of every reducer, and what changed",
     "identify": "estimate the stiffness indexes, fn and ζ from a recorded run",
     "parameters": "list every parameter of the nodes, as a page or as a parameter file",
     "paper": "reproduce every figure, table and claim of the source paper",

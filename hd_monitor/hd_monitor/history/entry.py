@@ -47,6 +47,8 @@ class Entry:
     relative : bool
     transmission_error, transmission_error_std : LinePair or None
         [arcmin peak to peak]
+    index_limits, transmission_error_limits : tuple of float
+        Of the warning and of the error, in the same units.
     lines : tuple of LineEstimate
     evidence : tuple of DirectionEvidence
         Lines direction by direction with their covariance, from joint states alone.
@@ -79,6 +81,8 @@ class Entry:
     relative: bool = False
     transmission_error: LinePair | None = None
     transmission_error_std: LinePair | None = None
+    index_limits: tuple[float, float] = (math.nan, math.nan)
+    transmission_error_limits: tuple[float, float] = (math.nan, math.nan)
     lines: tuple[LineEstimate, ...] = ()
     evidence: tuple[DirectionEvidence, ...] = ()
     rms_curve: tuple[SpeedBin, ...] = ()
@@ -94,12 +98,15 @@ class Entry:
     @classmethod
     def of(cls, assessment: Assessment, joint: str, *, kind: Kind = Kind.EVIDENCE, recording: str = "") -> Self:
         """Sum up an assessment; the motion behind it is for the caller to add."""
+        limits = assessment.settings.diagnosis
         entry = cls(
             serial=assessment.settings.serial,
             joint=joint,
             time=assessment.stamp / NANOSECONDS,
             kind=kind,
             verdict=assessment.verdict,
+            index_limits=(limits.warn_index, limits.error_index),
+            transmission_error_limits=(limits.warn_transmission_error, limits.error_transmission_error),
             rms_curve=assessment.rms_curve,
             source=assessment.settings.input.source,
             recording=recording,
@@ -134,6 +141,7 @@ class Entry:
         given = {name: value for name, value in content.items() if name in cls.__dataclass_fields__}
         verdict = given.get("verdict")
         given |= {name: math.nan if given.get(name) is None else given[name] for name in _NUMBERS}
+        given |= {name: tuple(_both(given[name])) for name in _LIMITS if name in given}
         given |= {name: _pair(given.get(name)) for name in _PAIRS}
         given["verdict"] = None if verdict is None else _verdict(verdict)
         given["lines"] = tuple(map(_line, given["lines"]))
@@ -143,6 +151,7 @@ class Entry:
 
 
 _NUMBERS = ("speed", "torque", "temperature")
+_LIMITS = ("index_limits", "transmission_error_limits")
 _PAIRS = ("index", "index_std", "transmission_error", "transmission_error_std")
 
 

@@ -1,0 +1,133 @@
+"""From the entries of a reducer to a series of values for each reading: indexes, transmission errors, lines, ratio."""
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import FloatArray
+from ..identification.result import LineEstimate
+from ..reducer import LinePair
+from .entry import Entry, Kind
+
+BASELINE_MOTION = 3600.0
+"""Motion [s] behind a baseline: the last before it was set or, where none was, the first of all."""
+
+SPLINES = ("flexspline", "circular_spline")
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Series:
+    """One reading over the life of a reducer.
+
+    Attributes
+    ----------
+    name, unit : str
+    times : ndarray, shape (points,)
+        [s] on the messages' clock.
+    revolutions : ndarray, shape (points,)
+        Of the wave generator since the reducer was first seen.
+    values, stds : ndarray, shape (points,)
+        With the standard deviation that each measurement had by itself.
+    is_baseline : ndarray of bool, shape (points,)
+        What the others are compared with.
+    warn, error : float
+        Limits in the same unit; NaN where there are none.
+    """
+
+    name: str
+    unit: str
+    times: FloatArray
+    revolutions: FloatArray
+    values: FloatArray
+    stds: FloatArray
+    is_baseline: np.typing.NDArray[np.bool_]
+    warn: float = math.nan
+    error: float = math.nan
+
+
+def series_of(entries: Sequence[Entry]) -> list[Series]:
+    """Return every reading of which a reducer's entries, by time, have at least one value.
+
+    Entries of another signal than the newest are left out: their lines have another unit.
+    """
+    turned = np.cumsum([entry.revolutions for entry in entries])
+    kept = [(entry, float(total)) for entry, total in zip(entries, turned, strict=True) if entry.kind is Kind.EVIDENCE]
+    kept = [(entry, total) for entry, total in kept if entry.source == kept[-1][0].source]
+    base = _baseline(entries, [entry for entry, _ in kept])
+    columns: dict[str, list[tuple[float, float, float, float, bool]]] = {}
+    about: dict[str, tuple[str, float, float]] = {}
+    for (entry, total), is_base in zip(kept, base, strict=True):
+        for name, unit, value, std, warn, error in _readings(entry):
+            if math.isfinite(value) and math.isfinite(std) and std > 0.0:
+                columns.setdefault(name, []).append((entry.time, total, value, std, is_base))
+                about[name] = unit, warn, error
+    return [_series(name, *about[name], rows) for name, rows in columns.items()]
+
+
+def _series(
+    name: str, unit: str, warn: float, error: float, rows: Iterable[tuple[float, float, float, float, bool]]
+) -> Series:
+    times, revolutions, values, stds, base = (np.array(column) for column in zip(*rows, strict=True))
+    return Series(
+        name=name,
+        unit=unit,
+        times=times,
+        revolutions=revolutions,
+        values=values,
+        stds=stds,
+        is_baseline=base.astype(bool),
+        warn=warn,
+        error=error,
+    )
+
+
+def _baseline(entries: Sequence[Entry], kept: Sequence[Entry]) -> list[bool]:
+    """Which entries are the baseline: those before the last mark, else the first, up to `BASELINE_MOTION`."""
+    marks = [place for place, entry in enumerate(entries) if entry.kind is Kind.BASELINE]
+    chosen: set[int] = set()
+    before = {id(entry) for entry in entries[: marks[-1]]} if marks else set()
+    order = [entry for entry in reversed(kept) if id(entry) in before] if marks else list(kept)
+    seconds = 0.0
+    for entry in order:
+        if chosen and seconds + entry.seconds > BASELINE_MOTION:
+            break
+        chosen.add(id(entry))
+        seconds += entry.seconds
+    return [id(entry) in chosen for entry in kept]
+
+
+def _readings(entry: Entry) -> Iterator[tuple[str, str, float, float, float, float]]:
+    """Name, unit, value, standard deviation, warn and error limit of each reading of an entry."""
+    none = (math.nan, math.nan)
+    if entry.index is not None and entry.index_std is not None and not entry.relative:
+        yield from _both("index", "fraction", entry.index, entry.index_std, entry.index_limits)
+    if entry.transmission_error is not None and entry.transmission_error_std is not None:
+        error, std = entry.transmission_error, entry.transmission_error_std
+        yield from _both("transmission error", "arcmin", error, std, entry.transmission_error_limits)
+    for line in _lines(entry):
+        yield from _both(f"line {line.k}", "signal's", line.amplitude, line.std, none)
+        if line.k == 1 and min(line.amplitude) > 0.0:
+            relative = [s / a for a, s in zip(line.amplitude, line.std, strict=True)]
+            # The logarithm's scatter does not depend on its size, and a doubling weighs as much as a halving
+            ratio = math.log(line.amplitude.flexspline / line.amplitude.circular_spline)
+            yield ("log of the ratio, flexspline over circular spline", "", ratio, math.hypot(*relative), *none)
+
+
+def _both(
+    name: str, unit: str, value: LinePair, std: LinePair, limits: tuple[float, float]
+) -> Iterator[tuple[str, str, float, float, float, float]]:
+    for spline in SPLINES:
+        yield (f"{spline.replace('_', ' ')} {name}", unit, getattr(value, spline), getattr(std, spline), *limits)
+
+
+def _lines(entry: Entry) -> Iterator[LineEstimate]:
+    """Lines of the entry's own motion; from joint states alone the pooled ones hold earlier motion too."""
+    if not entry.evidence:
+        yield from entry.lines
+    for k in sorted({piece.k for piece in entry.evidence}):
+        pieces = [piece for piece in entry.evidence if piece.k == k]
+        amplitude = np.mean([piece.amplitude for piece in pieces], axis=0)
+        std = np.sqrt(np.square([piece.std for piece in pieces]).sum(axis=0)) / len(pieces)
+        yield LineEstimate(k=k, amplitude=LinePair(*amplitude.tolist()), std=LinePair(*std.tolist()))

@@ -1,0 +1,181 @@
+"""Whether a reading changes: against its baseline, steadily, or in one step; and no more than the data bear."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from scipy.stats import t as t_distribution
+
+from ..arrays import FloatArray
+from .series import Series
+
+SIGNIFICANT = 0.01
+"""Probability below which a change or a slope is not an accident of the noise."""
+
+STEP_SIGNIFICANT = 0.001
+"""The same for a step, which is looked for at every place."""
+
+FEWEST = 4
+"""Values from which a slope, or a step, is looked for."""
+
+BANDS = 1.96
+"""Standard deviations to either side of a 95 % interval."""
+
+_DAY = 86_400.0
+_BETTER = 10.0  # by which a step must lower the sum of squares, in variances: odds of e^5 over a steady change
+
+
+class Change(NamedTuple):
+    """The newest value against the baseline, in the reading's unit."""
+
+    before: float
+    before_std: float
+    after: float
+    after_std: float
+    p_value: float
+
+    @property
+    def change(self) -> float:
+        """After less before."""
+        return self.after - self.before
+
+    @property
+    def std(self) -> float:
+        """Standard deviation of the change."""
+        return math.hypot(self.before_std, self.after_std)
+
+    @property
+    def significant(self) -> bool:
+        """Whether noise alone would hardly make such a difference."""
+        return self.p_value < SIGNIFICANT
+
+
+class Slope(NamedTuple):
+    """A steady change, and when the limit would be reached if it went on."""
+
+    per_day: float
+    per_day_std: float
+    per_million: float
+    """Per million revolutions of the wave generator; NaN where these are not known."""
+    per_million_std: float
+    p_value: float
+    days_to_limit: tuple[float, float] | None
+    """95 % interval from the newest value; None without a limit ahead."""
+
+
+class Step(NamedTuple):
+    """A sudden change, as an exchange that nobody entered makes it."""
+
+    time: float
+    """Of the first value after it [s]."""
+    change: float
+    std: float
+    p_value: float
+
+
+def change_of(series: Series) -> Change | None:
+    """Compare the newest values, as many as the baseline has at most, with the baseline; None if there are none since.
+
+    The repeatability counts: where the baseline's own values scatter by more than their standard deviations say, the
+    uncertainty of both sides is widened by that.
+    """
+    base = series.is_baseline
+    if not base.any() or base[-1]:
+        return None
+    later = np.arange(np.flatnonzero(base)[-1] + 1, base.size)
+    newest = later[-min(int(base.sum()), later.size) :]
+    before, before_std, widened = _mean(series.values[base], series.stds[base])
+    after, after_std, _ = _mean(series.values[newest], series.stds[newest] * widened)
+    deviation = abs(after - before) / math.hypot(before_std, after_std)
+    freedom = max(int(base.sum()) + newest.size - 2, 1) if widened > 1.0 else 1000
+    return Change(before, before_std, after, after_std, float(2.0 * t_distribution.sf(deviation, freedom)))
+
+
+def slope_of(series: Series) -> Slope | None:
+    """Fit a steady change to all values; None where the data bear none, or a step accounts for it better."""
+    if series.values.size < FEWEST or float(np.ptp(series.times)) <= 0.0:
+        return None
+    by_time = _line(series.times / _DAY, series.values, series.stds)
+    p_value = float(2.0 * t_distribution.sf(abs(by_time.slope) / by_time.slope_std, series.values.size - 2))
+    if p_value >= SIGNIFICANT or step_of(series) is not None:
+        return None
+    turned = (math.nan, math.nan)
+    if float(np.ptp(series.revolutions)) > 0.0:
+        by_turns = _line(series.revolutions / 1e6, series.values, series.stds)
+        turned = by_turns.slope, by_turns.slope_std
+    return Slope(by_time.slope, by_time.slope_std, *turned, p_value, _time_to_limit(series))
+
+
+def step_of(series: Series) -> Step | None:
+    """Look for one sudden change; None where noise makes one as large somewhere, or a steady change explains it."""
+    count = series.values.size
+    if count < FEWEST:
+        return None
+    best: Step | None = None
+    for place in range(2, count - 1):
+        sides = [_mean(series.values[part], series.stds[part]) for part in (slice(None, place), slice(place, None))]
+        (before, before_std, _), (after, after_std, _) = sides
+        std = math.hypot(before_std, after_std)
+        by_chance = (count - 3) * 2.0 * float(t_distribution.sf(abs(after - before) / std, count - 2))
+        if best is None or by_chance < best.p_value:
+            best = Step(float(series.times[place]), after - before, std, min(by_chance, 1.0))
+    if best is None or best.p_value >= STEP_SIGNIFICANT:
+        return None
+    steady = _line(series.times, series.values, series.stds).left
+    return best if _left_by_step(series, best.time) + _BETTER < steady else None
+
+
+def _time_to_limit(series: Series) -> tuple[float, float] | None:
+    """95 % interval of the days to the next limit above (Fieller); None if there is none, or on its way down."""
+    line = _line(series.times / _DAY, series.values, series.stds)
+    ahead = float(series.times[-1]) / _DAY - line.centre
+    now = line.mean + line.slope * ahead
+    limit = next((limit for limit in (series.warn, series.error) if math.isfinite(limit) and limit > now), math.nan)
+    if not math.isfinite(limit) or line.slope <= 0.0:
+        return None
+    # Above 0, since no slope is looked at that is not significant
+    missing, square = limit - line.mean, line.slope**2 - (BANDS * line.slope_std) ** 2
+    root = math.sqrt((line.slope * missing) ** 2 - square * (missing**2 - (BANDS * line.mean_std) ** 2))
+    first, last = ((line.slope * missing + sign * root) / square - ahead for sign in (-1.0, 1.0))
+    return max(first, 0.0), last
+
+
+def _mean(values: FloatArray, stds: FloatArray) -> tuple[float, float, float]:
+    """Weighted mean, its standard deviation widened where the values scatter by more than theirs, and by how much."""
+    weights = stds**-2.0
+    mean = float(weights @ values / weights.sum())
+    excess = float(weights @ (values - mean) ** 2) / (values.size - 1) if values.size > 1 else 1.0
+    widened = math.sqrt(max(excess, 1.0))
+    return mean, widened / math.sqrt(float(weights.sum())), widened
+
+
+class _Line(NamedTuple):
+    """A straight line fitted by weighted least squares, its uncertainty widened where the values scatter by more."""
+
+    centre: float
+    mean: float
+    mean_std: float
+    slope: float
+    slope_std: float
+    left: float
+    """Sum of squares that it leaves, in variances."""
+
+
+def _line(place: FloatArray, values: FloatArray, stds: FloatArray) -> _Line:
+    weights = stds**-2.0
+    total = float(weights.sum())
+    centre, mean = float(weights @ place) / total, float(weights @ values) / total
+    spread = float(weights @ (place - centre) ** 2)
+    slope = float(weights @ ((place - centre) * values)) / spread
+    left = float(weights @ (values - mean - slope * (place - centre)) ** 2)
+    widened = max(left / max(values.size - 2, 1), 1.0)
+    return _Line(centre, mean, math.sqrt(widened / total), slope, math.sqrt(widened / spread), left)
+
+
+def _left_by_step(series: Series, time: float) -> float:
+    """Sum of squares, in variances, that a step at a time leaves."""
+    left = 0.0
+    for part in (series.times < time, series.times >= time):
+        mean, _, _ = _mean(series.values[part], series.stds[part])
+        left += float(((series.values[part] - mean) ** 2 / series.stds[part] ** 2).sum())
+    return left

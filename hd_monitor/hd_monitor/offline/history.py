@@ -1,0 +1,218 @@
+"""What a ledger says of its reducers, as plain data, as rows and as text."""
+
+import csv
+import io
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from typing import Any
+
+from .. import __version__
+from ..diagnosis.verdict import Verdict
+from ..history.entry import Entry
+from ..history.ledger import Ledger, Reducer
+from ..history.series import Series, series_of
+from ..history.trend import Change, Slope, Step, change_of, slope_of, step_of
+from .errors import BagError
+from .result import plain
+
+COLUMNS = ("serial", "joint", "time", "revolutions", "reading", "unit", "value", "std", "is_baseline")
+"""Of a row for each value, as CSV and Parquet have them."""
+
+_DECADES = ((365.25, "years"), (30.4, "months"), (1.0, "days"), (1.0 / 24.0, "hours"))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Reading:
+    """A series of values, and what changed in it."""
+
+    series: Series
+    change: Change | None
+    slope: Slope | None
+    step: Step | None
+
+    @property
+    def remarks(self) -> list[str]:
+        """What is worth saying, in sentences; nothing where nothing changed."""
+        name, unit, said = self.series.name, self.series.unit, []
+        if self.change is not None and self.change.significant:
+            said.append(
+                f"{name}: {_shown(self.change.before, unit)} in the baseline, {_shown(self.change.after, unit)} now "
+                f"(changed by {_shown(self.change.change, unit)} ± {_shown(self.change.std, unit)})"
+            )
+        if self.step is not None:
+            said.append(
+                f"{name}: changed in one step by {_shown(self.step.change, unit)} ± {_shown(self.step.std, unit)} "
+                f"before {date(self.step.time)}; if the reducer was exchanged or adjusted then, mark it"
+            )
+        if self.slope is not None:
+            ahead = self.slope.days_to_limit
+            said.append(
+                f"{name}: changes by {_shown(self.slope.per_day, unit)} ± {_shown(self.slope.per_day_std, unit)} a day"
+                + (f"; the limit is {_duration(ahead)} away if that goes on" if ahead else "")
+            )
+        return said
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ReducerHistory:
+    """What the ledger has of one reducer since it was put in."""
+
+    reducer: Reducer
+    entries: Sequence[Entry]
+    readings: Sequence[Reading]
+
+    @property
+    def verdict(self) -> Verdict | None:
+        """The last one."""
+        return next((entry.verdict for entry in reversed(self.entries) if entry.verdict is not None), None)
+
+    @property
+    def joint(self) -> str:
+        """Where the reducer was seen last."""
+        return self.entries[-1].joint if self.entries else self.reducer.joint
+
+
+def read_histories(ledger: Ledger, serial: str | None = None) -> list[ReducerHistory]:
+    """Read every reducer's history, or that of one serial number.
+
+    Raises
+    ------
+    BagError
+        If the ledger knows nothing, or not this serial number.
+    """
+    known = ledger.reducers()
+    chosen = [reducer for reducer in known if serial is None or reducer.serial == serial]
+    if not chosen:
+        names = ", ".join(map(str, known)) or "no reducer yet"
+        raise BagError(f"{ledger.path} has nothing on {serial or 'any reducer'}; it knows {names}")
+    return [_history(reducer, ledger.entries(*reducer)) for reducer in chosen]
+
+
+def _history(reducer: Reducer, entries: Sequence[Entry]) -> ReducerHistory:
+    readings = [
+        Reading(series=series, change=change_of(series), slope=slope_of(series), step=step_of(series))
+        for series in series_of(entries)
+    ]
+    return ReducerHistory(reducer=reducer, entries=entries, readings=readings)
+
+
+def as_dict(histories: Sequence[ReducerHistory], path: str) -> dict[str, Any]:
+    """Write histories as plain data, fit for JSON."""
+    reducers = [
+        {
+            "serial": history.reducer.serial,
+            "joint": history.joint,
+            "entries": len(history.entries),
+            "revolutions": sum(entry.revolutions for entry in history.entries),
+            "verdict": _verdict(history),
+            "readings": [_reading(reading) for reading in history.readings],
+            "remarks": [remark for reading in history.readings for remark in reading.remarks],
+        }
+        for history in histories
+    ]
+    return dict(plain({"ledger": path, "reducers": reducers, "generator": f"hd_monitor {__version__}"}))
+
+
+def _verdict(history: ReducerHistory) -> dict[str, Any] | None:
+    entry = next((entry for entry in reversed(history.entries) if entry.verdict is not None), None)
+    if entry is None or entry.verdict is None:
+        return None
+    verdict = entry.verdict
+    return {
+        "component": verdict.component.value,
+        "level": int(verdict.level),
+        "level_name": verdict.level.name,
+        "fault_code": verdict.fault_code.value,
+        "cause": verdict.cause.value,
+        "reason": verdict.reason,
+        "time": entry.time,
+    }
+
+
+def _reading(reading: Reading) -> dict[str, Any]:
+    series, change, slope, step = reading.series, reading.change, reading.slope, reading.step
+    columns = zip(*(getattr(series, name).tolist() for name in ("times", "revolutions", "values", "stds")), strict=True)
+    return {
+        "reading": series.name,
+        "unit": series.unit,
+        "warn_limit": series.warn,
+        "error_limit": series.error,
+        "values": [
+            {"time": time, "revolutions": turns, "value": value, "std": std, "is_baseline": base}
+            for (time, turns, value, std), base in zip(columns, series.is_baseline.tolist(), strict=True)
+        ],
+        "change": change and change._asdict() | {"change": change.change, "change_std": change.std},
+        "slope": slope and slope._asdict(),
+        "step": step and step._asdict(),
+    }
+
+
+def rows(histories: Sequence[ReducerHistory]) -> Iterator[tuple[Any, ...]]:
+    """Yield a row of `COLUMNS` for each value."""
+    for history in histories:
+        for entry in _reading_rows(history):
+            yield (history.reducer.serial, history.joint, *entry)
+
+
+def _reading_rows(history: ReducerHistory) -> Iterator[tuple[Any, ...]]:
+    for reading in history.readings:
+        series = reading.series
+        for place in range(series.values.size):
+            yield (
+                float(series.times[place]),
+                float(series.revolutions[place]),
+                series.name,
+                series.unit,
+                float(series.values[place]),
+                float(series.stds[place]),
+                bool(series.is_baseline[place]),
+            )
+
+
+def as_csv(histories: Sequence[ReducerHistory]) -> str:
+    """Write a row for each value as CSV with a header."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerows([COLUMNS, *rows(histories)])
+    return text.getvalue()
+
+
+def table(histories: Sequence[ReducerHistory]) -> str:
+    """Write the state of every reducer in a line, and below it what changed."""
+    lines = []
+    for history in histories:
+        verdict = history.verdict
+        shown = f"{verdict.level.name}, {verdict.component.value}" if verdict else "no verdict"
+        since = date(history.entries[-1].time) if history.entries else "never"
+        turns = sum(entry.revolutions for entry in history.entries)
+        place = f", {history.joint}" if history.reducer.serial and history.joint else ""
+        lines.append(f"{history.reducer}{place}: {shown} ({since})")
+        lines.append(f"  {len(history.entries)} entries over {turns:.0f} revolutions of the wave generator")
+        for reading in history.readings:
+            series = reading.series
+            value, std = (_shown(float(column[-1]), series.unit) for column in (series.values, series.stds))
+            change = f", changed by {_shown(reading.change.change, series.unit)}" if reading.change else ""
+            spread = f" ± {_shown(reading.change.std, series.unit)}" if reading.change else ""
+            lines.append(f"  {series.name}: {value} ± {std}{change}{spread}")
+        lines += [f"  {remark}" for reading in history.readings for remark in reading.remarks]
+    return "\n".join(lines)
+
+
+def date(time: float) -> str:
+    """Write a time [s since 1970] to the minute, in UTC."""
+    return datetime.fromtimestamp(time, UTC).strftime("%Y-%m-%d %H:%M")
+
+
+def _shown(value: float, unit: str) -> str:
+    if unit == "arcmin":
+        return f"{value:.3g}′"
+    if unit == "fraction":
+        return f"{100.0 * value:.3g} %"
+    return f"{value:.3g}"
+
+
+def _duration(interval: tuple[float, float]) -> str:
+    low, high = interval
+    size, unit = next(((size, unit) for size, unit in _DECADES if high >= 2.0 * size), _DECADES[-1])
+    return f"{low / size:.2g} to {high / size:.2g} {unit}"
