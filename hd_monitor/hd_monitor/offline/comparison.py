@@ -5,28 +5,43 @@ from collections.abc import Mapping, Sequence
 from operator import itemgetter
 from typing import Any, NamedTuple
 
-from scipy.stats import norm
-
 from .errors import BagError
+from .line_changes import (
+    SIGNIFICANT,
+    SPLINES,
+    CurveChange,
+    LineChange,
+    RatioChange,
+    as_entry,
+    chance_of,
+    curve_change,
+    describe_curve,
+    describe_lines,
+    line_changes,
+    ratio_change,
+)
 from .result import plain
 from .summary import percent_with_std
 
-SIGNIFICANT = 0.01
-"""Probability below which a change is not an accident of the noise."""
 SMALL = 0.002
 """Change of an index (fraction of the stiffness) that matters to nobody, however significant."""
 
 _TOO_LARGE = 1e100
 """Numbers from here on, infinity and NaN are damage: their ratios and differences mean nothing."""
 
-SPLINES = ("circular_spline", "flexspline")
+_TOO_SMALL = 1e-100
+
+_BIN_WIDTH = 100.0  # rpm, where a result does not say
 
 _GEOMETRY = ("reducer.flexspline_teeth", "reducer.circular_spline_teeth", "reducer.mount")
 _BASIS = ("dynamics.natural_frequency", "dynamics.damping_ratio", "input.source", "load.torque", "load.source")
 
 
 class IndexChange(NamedTuple):
-    """An index before and after, as fractions, and the probability of such a difference without a change."""
+    """An index before and after, and the probability of such a difference without a change.
+
+    Fractions of the stiffness; shares whose squares add up to one where the result is relative.
+    """
 
     spline: str
     before: float
@@ -39,6 +54,11 @@ class IndexChange(NamedTuple):
     def change(self) -> float:
         """After less before."""
         return self.after - self.before
+
+    @property
+    def change_std(self) -> float:
+        """Standard deviation of the change."""
+        return math.hypot(self.before_std, self.after_std)
 
     @property
     def significant(self) -> bool:
@@ -60,7 +80,13 @@ class JointChange(NamedTuple):
     before: Mapping[str, Any]
     after: Mapping[str, Any]
     indexes: tuple[IndexChange, ...]
-    """Empty where the indexes cannot be compared."""
+    """Empty where the indexes cannot be compared, as relative ones with absolute ones."""
+    relative: bool
+    """Whether the indexes are shares."""
+    lines: tuple[LineChange, ...]
+    """Empty where the two were taken from different signals."""
+    ratio: RatioChange | None
+    curve: CurveChange | None
     peaks: tuple[Peak, Peak] | None
     """Highest points at the speeds that both curves have, before and after; None if they have none in common."""
     sentences: tuple[str, ...]
@@ -93,7 +119,14 @@ def as_dict(changes: Sequence[JointChange], before: str, after: str) -> dict[str
             "joint": change.joint,
             "before": change.before["verdict"],
             "after": change.after["verdict"],
-            "indexes": [i._asdict() | {"change": i.change, "significant": i.significant} for i in change.indexes],
+            "indexes": [
+                i._asdict() | {"change": i.change, "change_std": i.change_std, "significant": i.significant}
+                for i in change.indexes
+            ],
+            "relative": change.relative,
+            "lines": [as_entry(line) for line in change.lines],
+            "ratio": change.ratio and as_entry(change.ratio),
+            "rms_change": change.curve and change.curve._asdict(),
             "peaks": change.peaks and [peak._asdict() for peak in change.peaks],
             "rms_curve_before": change.before["rms_curve"],
             "rms_curve_after": change.after["rms_curve"],
@@ -109,7 +142,7 @@ def _by_joint(result: Mapping[str, Any], which: str) -> dict[str, Mapping[str, A
     try:
         entries = {entry["joint"]: entry for entry in result["joints"] if entry["verdict"]}
         whole = all(map(_is_whole, entries.values()))
-    except (KeyError, TypeError):
+    except (KeyError, TypeError, AttributeError):
         whole = False
     if not whole:
         raise BagError(
@@ -123,12 +156,18 @@ def _is_whole(entry: Mapping[str, Any]) -> bool:
     """Whether what is read of an entry is of its type; what is missing raises a `KeyError`."""
     verdict, curve = entry["verdict"], entry["rms_curve"]
     indexes = [verdict[f"{spline}_index{suffix}"] for spline in SPLINES for suffix in ("", "_std")]
-    words = [entry["joint"], verdict["component"], verdict["level_name"]]
+    lines, given = entry.get("lines", []), entry.get("parameters", {})
+    words = [entry["joint"], verdict["component"], verdict["level_name"], verdict["reason"]]
     numbers = [verdict["level"], *(index for index in indexes if index is not None)]
+    if not (isinstance(curve, list) and isinstance(lines, list) and isinstance(given, Mapping)):
+        return False
+    values = [line.get(f"{spline}{suffix}") for line in lines for spline in SPLINES for suffix in ("", "_std")]
     numbers += [point[key] for point in curve for key in ("rpm", "rms")]
+    numbers += [line["k"] for line in lines] + [value for value in values if value is not None]
+    width = given.get("analysis.rms_bin_width", _BIN_WIDTH)
     return (
-        isinstance(curve, list)
-        and isinstance(entry.get("parameters", {}), Mapping)
+        isinstance(width, (int, float))
+        and width > _TOO_SMALL
         and all(isinstance(word, str) for word in words)
         and all(isinstance(number, (int, float)) and abs(number) < _TOO_LARGE for number in numbers)
     )
@@ -142,13 +181,24 @@ def _joint_change(before: Mapping[str, Any], after: Mapping[str, Any]) -> JointC
             "cannot be compared: replay both with the right --params"
         )
     sentences = [_verdict_sentence(before["verdict"], after["verdict"])]
-    relative = bool(before.get("relative") or after.get("relative"))
-    indexes = () if relative else _index_changes(before["verdict"], after["verdict"])
+    kinds = {bool(entry.get("relative")) for entry in (before, after)}
+    relative = True in kinds
+    indexes = _index_changes(before["verdict"], after["verdict"]) if len(kinds) == 1 else ()
     if relative:
         sentences.append(
-            "The indexes are relative, since torque or transfer function are unknown: compare their ratio only."
+            "The indexes are relative, since torque or transfer function are unknown: compare the lines and their "
+            "ratio."
         )
-    sentences += [_index_sentence(change) for change in indexes]
+    else:
+        sentences += [_index_sentence(change) for change in indexes]
+    same_signal = given.get("input.source") == given_now.get("input.source")
+    lines = line_changes(before.get("lines", ()), after.get("lines", ())) if same_signal else ()
+    ratio = ratio_change(lines)
+    sentences += describe_lines(lines, ratio)
+    if curve := curve_change(
+        before["rms_curve"], after["rms_curve"], float(given.get("analysis.rms_bin_width", _BIN_WIDTH))
+    ):
+        sentences.append(describe_curve(curve))
     peaks = _peaks(before["rms_curve"], after["rms_curve"])
     if peaks is not None:
         sentences.append(_peak_sentence(*peaks))
@@ -156,7 +206,18 @@ def _joint_change(before: Mapping[str, Any], after: Mapping[str, Any]) -> JointC
         sentences.append("The two recordings have no speed in common, so that their vibration cannot be compared.")
     if changed := [name for name in _BASIS if given.get(name) != given_now.get(name)]:
         sentences.append(f"Mind that the two were analysed with different values of {', '.join(changed)}.")
-    return JointChange(before["joint"], before, after, indexes, peaks, tuple(sentences))
+    return JointChange(
+        joint=before["joint"],
+        before=before,
+        after=after,
+        indexes=indexes,
+        relative=relative,
+        lines=lines,
+        ratio=ratio,
+        curve=curve,
+        peaks=peaks,
+        sentences=tuple(sentences),
+    )
 
 
 def _index_changes(before: Mapping[str, Any], after: Mapping[str, Any]) -> tuple[IndexChange, ...]:
@@ -166,8 +227,7 @@ def _index_changes(before: Mapping[str, Any], after: Mapping[str, Any]) -> tuple
         if any(value is None for value in values):
             continue
         old, old_std, new, new_std = (float(value) for value in values)
-        spread = math.hypot(old_std, new_std)
-        p_value = float(2.0 * norm.sf(abs(new - old) / spread)) if spread > 0.0 else float(new == old)
+        p_value = chance_of(new - old, math.hypot(old_std, new_std))
         changes.append(IndexChange(spline, old, old_std, new, new_std, p_value))
     return tuple(changes)
 
@@ -196,6 +256,13 @@ def _verdict_sentence(before: Mapping[str, Any], after: Mapping[str, Any]) -> st
     old, new = (words.get(verdict["component"], _name(verdict["component"])) for verdict in (before, after))
     if (before["component"], before["level"]) == (after["component"], after["level"]):
         return f"The verdict is the same: {old}, {before['level_name']}."
+    if after["component"] == "undetermined":
+        return (
+            f"The first named {old}, {before['level_name']}; the second bears no name, which is less evidence and no "
+            f"deterioration by itself: {after['reason']}"
+        )
+    if before["component"] == "undetermined":
+        return f"The first bore no name; the second has evidence for one: {new}, {after['level_name']}."
     return f"The verdict went from {old}, {before['level_name']}, to {new}, {after['level_name']}."
 
 

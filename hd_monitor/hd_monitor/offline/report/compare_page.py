@@ -25,11 +25,12 @@ def write_comparison(folder: Path, content: Mapping[str, Any], changes: Sequence
 
 def _pictures(change: JointChange) -> dict[str, bytes]:
     drawn = {}
-    curves = [[SpeedBin(b["rpm"], b["rms"], b["samples"]) for b in side["rms_curve"]] for side in change[1:3]]
+    sides = change.before, change.after
+    curves = [[SpeedBin(b["rpm"], b["rms"], b["samples"]) for b in side["rms_curve"]] for side in sides]
     if max(map(len, curves)) >= FEWEST_SPEEDS:
         critical = _critical(change.after)
         drawn["property_curves"] = rms_plot(*curves, critical=critical, title="Vibration over speed")
-    if change.indexes:
+    if change.indexes and not change.relative:
         limits = {"warn": change.after["warn_limit"], "error": change.after["error_limit"]}
         drawn["indexes"] = index_change_plot(change.indexes, **limits, title="Stiffness indexes before and after")
     return {name: png(figure) for name, figure in drawn.items()}
