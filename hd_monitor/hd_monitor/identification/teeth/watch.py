@@ -37,6 +37,7 @@ SHARE = 0.02
 """Part of the largest line that an unexplained one must have to matter."""
 
 _STANDS_OUT = 5.0  # medians of the spectrum: 3e-8 by chance
+_STRONG, _AROUND = 0.4, 6  # of the largest amplitude within so many orders
 _LOWEST_ORDER = 20  # gravity, friction and the load's own orders lie below
 
 
@@ -50,8 +51,8 @@ class ToothWatch:
         Of the vibration, and of what the fit with the given teeth leaves of it.
     asked : tuple of ToothPair
         Candidates that were compared last.
-    seconds : float
-        Motion seen [s] by then.
+    seconds, tried : float
+        Motion seen [s] by then, and when neighbours were last put to trial, which costs as much as a fit.
     doubt : Limitation or None
         Why no part may be named, if other tooth numbers explain the vibration better.
     """
@@ -60,6 +61,7 @@ class ToothWatch:
     residual: OrderSpectrum = field(default_factory=OrderSpectrum)
     asked: tuple[ToothPair, ...] = ()
     seconds: float = 0.0
+    tried: float = 0.0
     doubt: Limitation | None = None
 
     def after(self, fit: Fit, dynamics: Dynamics, *, anew: bool) -> "ToothWatch":
@@ -109,13 +111,27 @@ class ToothWatch:
         best, own = ranking.ranked[0], ToothPair.of(given)
         far = self.signal.turns > APART
         shown = {candidate.teeth for candidate in candidates if far and shows_two_lines(candidate, [self.signal.solve])}
+        looked = replace(self, asked=asked, seconds=seconds)
+        if own in shown and self._are_strong(own):  # a tone beside them makes another pair with one of the two
+            return replace(looked, doubt=None)
         if ranking.lead(own) > LEAD and (best.teeth in shown or (best.pairs_found > 1 and not one_speed)):
-            return replace(self, asked=asked, seconds=seconds, doubt=ranking.contradiction(given))
+            return replace(looked, doubt=ranking.contradiction(given))
         open_to = set(asked) if self.signal.turns < APART and not one_speed else shown
         near = [teeth for teeth in ranking.contenders(own, LEAD) if teeth in open_to and abs(teeth[0] - own[0]) < NEAR]
-        better = trial(given, [teeth.reducer(given.mount) for teeth in near]) if near else None
+        if not near:
+            return replace(looked, doubt=None)
+        if seconds < GROWTH * self.tried:
+            return looked
+        better = trial(given, [teeth.reducer(given.mount) for teeth in near])
         doubt = contradiction(given, ToothPair.of(better)) if better is not None else None
-        return replace(self, asked=asked, seconds=seconds, doubt=doubt)
+        return replace(looked, tried=seconds, doubt=doubt)
+
+    def _are_strong(self, teeth: ToothPair) -> bool:
+        """Whether both first lines are of the size of what is around them: side lines of a load are weaker."""
+        amplitudes = self.signal.amplitudes
+        low, high = (int(order) for order in teeth)
+        around = amplitudes[max(0, low - _AROUND) : high + _AROUND + 1]
+        return float(min(amplitudes[low], amplitudes[high])) > _STRONG * float(around.max())
 
     @property
     def _is_unexplained(self) -> bool:

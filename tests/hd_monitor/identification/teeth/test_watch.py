@@ -202,6 +202,24 @@ def test_where_the_travel_does_not_separate_lines_a_trial_decides_between_neighb
     assert look(blurred, trial=no_trial).doubt is None
 
 
+def test_neighbours_are_put_to_trial_once_until_the_motion_has_grown():
+    tried = []
+
+    def trial(given, others):
+        tried.append(others)
+
+    blurred = watching({162: 1.0, 164: 0.5}, turns=0.3, noise=2.0)
+    for seconds in np.arange(10.0, 10.0 * GROWTH + 1.0):
+        blurred = look(replace(blurred, asked=()), seconds=seconds, one_speed=False, trial=trial)
+    assert len(tried) == 2
+
+
+@pytest.mark.parametrize("tone", [0.3, 1.0])
+@pytest.mark.parametrize("order", [158, 164])
+def test_a_tone_beside_both_lines_given_makes_no_pair_with_one_of_them(order, tone):
+    assert look(watching({160: 0.5, 162: 1.0, order: tone})).doubt is None
+
+
 def test_fading_keeps_the_amplitudes():
     watch = watching({200: 1.0}).faded(0.5)
     np.testing.assert_allclose(watch.signal.amplitudes, spectrum({200: 1.0}).amplitudes)
