@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.stats import t as t_distribution
 
-from ..arrays import FloatArray
+from ..arrays import FloatArray, IntArray
 from .series import Series
 
 SIGNIFICANT = 0.01
@@ -111,18 +111,38 @@ def step_of(series: Series) -> Step | None:
     count = series.values.size
     if count < FEWEST:
         return None
-    best: Step | None = None
-    for place in range(2, count - 1):
-        sides = [_mean(series.values[part], series.stds[part]) for part in (slice(None, place), slice(place, None))]
-        (before, before_std, _), (after, after_std, _) = sides
-        std = math.hypot(before_std, after_std)
-        by_chance = (count - 3) * 2.0 * float(t_distribution.sf(abs(after - before) / std, count - 2))
-        if best is None or by_chance < best.p_value:
-            best = Step(float(series.times[place]), after - before, std, min(by_chance, 1.0))
-    if best is None or best.p_value >= STEP_SIGNIFICANT:
-        return None
+    place = np.arange(2, count - 1)
+    before, after = _sides(series, place)
+    change, std = after.mean - before.mean, np.hypot(before.std, after.std)
+    chances = place.size * 2.0 * t_distribution.sf(np.abs(change) / std, count - 2)
+    # By the misfit, since the least probabilities are all 0
+    best = int(np.argmin(before.left + after.left))
     steady = _line(series.times, series.values, series.stds).left
-    return best if _left_by_step(series, best.time) + _BETTER < steady else None
+    if chances[best] >= STEP_SIGNIFICANT or before.left[best] + after.left[best] + _BETTER >= steady:
+        return None
+    return Step(float(series.times[place[best]]), float(change[best]), float(std[best]), float(chances[best]))
+
+
+class _Side(NamedTuple):
+    """Weighted means on one side of several places, their widened standard deviations, and what they leave."""
+
+    mean: FloatArray
+    std: FloatArray
+    left: FloatArray
+
+
+def _sides(series: Series, place: IntArray) -> tuple[_Side, _Side]:
+    weights = series.stds**-2.0
+    # Less their mean, so that the squares keep their digits
+    values = series.values - float(weights @ series.values / weights.sum())
+    sums = np.cumsum(np.stack([weights, weights * values, weights * values**2]), axis=1)
+    first, second = sums[:, place - 1], sums[:, -1:] - sums[:, place - 1]
+    sides = []
+    for (total, linear, square), count in ((first, place), (second, values.size - place)):
+        left = np.maximum(square - linear**2 / total, 0.0)
+        widened = np.sqrt(np.maximum(left / np.maximum(count - 1, 1), 1.0))
+        sides.append(_Side(linear / total, widened / np.sqrt(total), left))
+    return sides[0], sides[1]
 
 
 def _time_to_limit(series: Series) -> tuple[float, float] | None:
@@ -170,12 +190,3 @@ def _line(place: FloatArray, values: FloatArray, stds: FloatArray) -> _Line:
     left = float(weights @ (values - mean - slope * (place - centre)) ** 2)
     widened = max(left / max(values.size - 2, 1), 1.0)
     return _Line(centre, mean, math.sqrt(widened / total), slope, math.sqrt(widened / spread), left)
-
-
-def _left_by_step(series: Series, time: float) -> float:
-    """Sum of squares, in variances, that a step at a time leaves."""
-    left = 0.0
-    for part in (series.times < time, series.times >= time):
-        mean, _, _ = _mean(series.values[part], series.stds[part])
-        left += float(((series.values[part] - mean) ** 2 / series.stds[part] ** 2).sum())
-    return left
