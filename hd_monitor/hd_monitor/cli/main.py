@@ -20,6 +20,7 @@ COMMANDS = {
     "compare": "compare two bags or two JSON results: what changed",
     "history": "show what the ledger knows of every reducer, and what changed",
     "identify": "estimate the stiffness indexes, fn and ζ from a recorded run",
+    "move": "write a health-check move for a joint",
     "parameters": "list every parameter of the nodes, as a page or as a parameter file",
     "paper": "reproduce every figure, table and claim of the source paper",
 }
