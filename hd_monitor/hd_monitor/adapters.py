@@ -19,6 +19,9 @@ from .sources import Quantity, Stamped
 UNNAMED_JOINT = "joint"
 """Name of a joint that the parameters do not name; it takes the only joint there is in joint_states."""
 
+LARGEST_MESSAGE = 2_000_000
+"""Bytes; a block of 250 000 samples has as many. Larger messages are refused unread: decoding costs time and copies."""
+
 
 class Sink(Protocol):
     """What an adapter feeds: the input side of :class:`hd_monitor.monitor.Monitor`."""
@@ -55,6 +58,13 @@ class Inputs:
 
     def add(self, quantity: Quantity, messages: Sequence[bytes]) -> None:
         """Feed messages of one of the joint's topics, in the order of their arrival."""
+        if max(map(len, messages), default=0) > LARGEST_MESSAGE:
+            for message in (message for message in messages if len(message) > LARGEST_MESSAGE):
+                megabytes = len(message) / 1e6
+                self._sink.reject(
+                    f"a message of {megabytes:.1f} MB; more than {LARGEST_MESSAGE / 1e6:g} MB are not read"
+                )
+            messages = [message for message in messages if len(message) <= LARGEST_MESSAGE]
         decode = self._sources[quantity].decode
         if decode is None:
             self._add_motion(messages)

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from hd_monitor import adapters
 from hd_monitor.adapters import Inputs
 from hd_monitor.arrays import FloatArray, IntArray
 from hd_monitor.contract import Block
@@ -145,6 +146,15 @@ def test_blocks_come_in_order_and_wrong_layouts_are_reported() -> None:
     assert [b.samples.tolist() for b in sink.blocks] == [[1.0, 2.0], [3.0], [6.0, 7.0]]
     assert "labelled 'torque'" in sink.rejected[0]
     assert len(sink.rejected) == 2
+
+
+def test_a_message_of_many_megabytes_is_refused_unread(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(adapters, "LARGEST_MESSAGE", 1000)
+    feed, sink = inputs()
+    small, large = block(5, [1.0, 2.0]), block(6, [0.0] * 1000)
+    feed.add(Quantity.VIBRATION, [large, small, large])
+    assert [b.samples.tolist() for b in sink.blocks] == [[1.0, 2.0]]
+    assert sink.rejected == 2 * ["a message of 0.0 MB; more than 0.001 MB are not read"]
 
 
 @pytest.mark.parametrize(("axis", "expected"), [("x", 2.0), ("y", 4.0), ("-z", -6.0)])

@@ -28,6 +28,10 @@ class PolledGroup(CallbackGroup):
         """Nothing to do: nothing of this group is executed."""
 
 
+MOST_AT_ONCE = 20_000_000
+"""Bytes taken from a queue before other work has its turn."""
+
+
 class DrainedSubscription:
     """A subscription whose queue of serialised messages is taken on request.
 
@@ -61,13 +65,15 @@ class DrainedSubscription:
         self.topic: str = self._subscription.topic_name
 
     def drain(self) -> list[bytes]:
-        """Take the queue's messages, at most one queue's depth at a time."""
+        """Take the queue's messages, at most one queue's depth at a time, and not much more than `MOST_AT_ONCE`."""
         messages: list[bytes] = []
+        size = 0
         handle = self._subscription.handle
         with handle:
             take, kind = handle.take_message, self._type
-            while len(messages) < self._depth and (taken := take(kind, True)) is not None:
+            while len(messages) < self._depth and size < MOST_AT_ONCE and (taken := take(kind, True)) is not None:
                 messages.append(taken[0])
+                size += len(taken[0])
         return messages
 
     def close(self) -> None:

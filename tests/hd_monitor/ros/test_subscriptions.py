@@ -63,6 +63,24 @@ def test_a_queue_that_runs_over_keeps_the_newest(peer: Any) -> None:
     assert stamps == sorted(set(stamps))
 
 
+def test_large_messages_are_taken_one_after_the_other(peer: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    from geometry_msgs.msg import AccelStamped
+
+    from hd_monitor.ros import subscriptions
+
+    monkeypatch.setattr(subscriptions, "MOST_AT_ONCE", 1)
+    subscription = drained(peer, 20)
+    publish(peer.publisher(AccelStamped, "torsional_acceleration"), 0, 3)
+    taken: list[int] = []
+
+    def complete() -> bool:
+        taken.append(len(subscription.drain()))
+        return sum(taken) == 3
+
+    peer.until(complete, "3 messages")
+    assert max(taken) == 1
+
+
 def test_the_executor_never_sees_it(peer: Any) -> None:
     from hd_monitor.ros.subscriptions import PolledGroup
 
