@@ -21,7 +21,7 @@ _TORQUE = {LimitationCode.TORQUE_TOO_SMALL, LimitationCode.TORQUE_TOO_LARGE}
 _FELL = 0.25  # of the level before: a quieter vibration is asked whether it still holds lines
 _HEARD, _UNHEARD = 0.5, 0.15  # part of the power that lines explain where a sensor hears the joint, and where not
 _DOUBTFUL = 0.0  # dB of signal to noise: the model explains less than half of the power
-_NEAR, _FOLLOWS = 0.05, 0.2  # part of the power near the lines, above noise's, and that of it that follows the angle
+_NEAR, _FOLLOWS = 0.03, 0.2  # part of the power near the lines, and that of it that follows the angle
 _AS_FAST = 0.8  # of the speed before
 
 

@@ -16,7 +16,7 @@ _RIDGE = 1e-3  # of the lines' power: where a window does not separate the two o
 
 
 class LineShares(NamedTuple):
-    """Parts of the vibration's power that lines explain; a little above 1 where pairs overlap."""
+    """Parts of a vibration's power that lines explain beyond what they would of noise; above 1 where pairs overlap."""
 
     by_window: float
     """With amplitudes and phases of their own in each window: whatever is near the lines' orders."""
@@ -35,7 +35,7 @@ def line_shares(records: Sequence[Record], reducer: Reducer, dynamics: Dynamics,
         return LineShares(0.0, 0.0)
     size = len(signal)
     width = min(round(WINDOW / signal.period), size)
-    explained = np.zeros(2)
+    explained, by_chance = np.zeros(2), np.zeros(2)
     for spectra in signal.lines(reducer, dynamics, harmonics, length=fft.next_fast_len(2 * size), torque=True):
         lines = np.array([fft.ifft(spectrum)[:size] for spectrum in spectra])
         windows = (slice(first, first + width) for first in range(size % width, size, width))
@@ -43,7 +43,8 @@ def line_shares(records: Sequence[Record], reducer: Reducer, dynamics: Dynamics,
             sum(_explained(lines[::2, window], signal.vibration[window]) for window in windows),
             _explained(lines, signal.vibration),
         ]
-    by_window, throughout = (explained / signal.power).tolist()
+        by_chance += len(lines) / width, 2 * len(lines) / size  # real columns over samples
+    by_window, throughout = np.maximum(explained / signal.power - by_chance, 0.0).tolist()
     return LineShares(by_window, throughout)
 
 

@@ -39,7 +39,7 @@ def test_a_reducers_lines_follow_its_angle(motion: str, snr: float) -> None:
     assert throughout > 0.5 * by_window
 
 
-@pytest.mark.parametrize(("heard", "moving"), [("strokes", "steady"), ("steps", "strokes"), ("steady", "strokes")])
+@pytest.mark.parametrize(("heard", "moving"), [("steps", "strokes"), ("run-up", "strokes")])
 def test_another_joints_vibration_does_not(heard: str, moving: str) -> None:
     other, own = recorded(heard), recorded(moving)
     size = min(len(other), len(own))
@@ -52,11 +52,25 @@ def test_another_joints_vibration_does_not(heard: str, moving: str) -> None:
         torque=own.torque[:size],
     )
     by_window, throughout = shares(mixed)
+    assert by_window > 0.05
     assert throughout < 0.2 * by_window
 
 
-def test_noise_is_not_near_the_lines() -> None:
-    own = recorded("strokes")
+def every_nth(record: Record, every: int) -> Record:
+    part = slice(None, None, every)
+    return Record(
+        start=record.start,
+        period=every * record.period,
+        acceleration=record.acceleration[part],
+        angle=record.angle[part],
+        speed=record.speed[part],
+        torque=record.torque[part],
+    )
+
+
+@pytest.mark.parametrize("every", [1, 5])
+def test_noise_is_not_near_the_lines(every: int) -> None:
+    own = every_nth(recorded("strokes"), every)
     noise = replace(own, acceleration=np.random.default_rng(5).standard_normal(len(own)))
-    assert max(shares(noise)) < 0.05
+    assert max(shares(noise)) < 0.02
     assert shares(replace(own, acceleration=np.zeros(len(own)))) == (0.0, 0.0)
