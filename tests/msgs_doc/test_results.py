@@ -3,12 +3,14 @@
 import json
 import re
 from collections.abc import Iterator
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from hd_monitor.cli.main import main
+from hd_monitor.identification.checks.something_else import SomethingElse
 from hd_monitor.offline import comparison
 
 pytest.importorskip("rosbags")
@@ -57,6 +59,7 @@ def test_every_key_of_a_replay_is_documented(written: dict[str, Any]) -> None:
     assert sorted(joint["verdict"]) == sorted(keys_below("Verdict"))
     assert sorted(joint["timeline"][-1]) == sorted([*keys_below("Verdict"), *keys_below("Each entry of timeline")])
     assert sorted(joint["lines"][0]) == sorted(keys_below("Each entry of lines"))
+    assert {f.name for f in fields(SomethingElse)} == set(keys_below("Each entry of something_else"))
     assert sorted(joint["rms_curve"][0]) == sorted(keys_below("Each entry of rms_curve"))
     assert sorted(joint["quality"]) == sorted(keys_below("Quality"))
 

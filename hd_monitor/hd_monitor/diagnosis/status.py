@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from ..assessment import Assessment
 from ..identification.result import Identification
+from .something_else import describe_all_else
 
 _NOTHING = Identification.none((), relative=False)
 """Stands in as long as nothing is identified."""
@@ -62,6 +63,7 @@ def status_of(assessment: Assessment, joint: str) -> Status:
         ("travel needed (deg)", _number(math.degrees(needed), 1)),
         ("signal to noise (dB)", _number(found.signal_to_noise, 1)),
         ("misfit", _number(found.misfit, 2)),
+        ("something else", describe_all_else(found.something_else)),
         ("fit", found.fit_status.value if found.fit_status else "none"),
         ("natural frequency (Hz)", _number(found.natural_frequency, 2)),
         ("natural frequency std (Hz)", _number(found.natural_frequency_std, 2)),

@@ -12,6 +12,7 @@ from ..limitation import Limitation
 from ..model.critical_speed import critical_speed
 from ..model.parameters import ParametricModel
 from ..reducer import LinePair
+from .checks.something_else import SomethingElse
 from .fit.gauss_newton import FitStatus
 from .sensorless.agreement import DirectionEvidence
 
@@ -73,6 +74,8 @@ class Identification:
         Why the newest fit ended; None where nothing is fitted step by step (sensorless).
     evidence : tuple of DirectionEvidence
         Lines of the newest motion direction by direction; none with a sensor.
+    something_else : tuple of SomethingElse
+        What the model leaves unexplained, the strongest first; nothing without a sensor.
     limitations : tuple of Limitation
         What weakens the result, or forbids naming a part on it.
     """
@@ -102,6 +105,7 @@ class Identification:
     limitations: tuple[Limitation, ...] = ()
     beta_covariance: FloatArray | None = None
     evidence: tuple[DirectionEvidence, ...] = ()
+    something_else: tuple[SomethingElse, ...] = ()
 
     @classmethod
     def none(cls, limitations: tuple[Limitation, ...], *, relative: bool) -> Self:

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
+from ..diagnosis.something_else import describe_something_else
 from ..diagnosis.verdict import Level
 from .result import JointResult
 
@@ -60,6 +61,7 @@ def summarise(result: JointResult) -> str:
             + ("" if found.relative else f"; limits {100 * limits.warn_index:g} % and {100 * limits.error_index:g} %"),
             f"  from {math.degrees(found.travel):.0f}° of travel, signal to noise {found.signal_to_noise:.0f} dB",
         ]
+        lines += [f"  something else: {describe_something_else(row)}" for row in found.something_else]
     quality = last.quality
     samples = "" if result.plan.settings.sensorless else f"{quality.samples} samples at {quality.rate:.1f} Hz, "
     lines.append(f"  {samples}{quality.motion_messages} joint states; {faults_in_words(asdict(quality))}")

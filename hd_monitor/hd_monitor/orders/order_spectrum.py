@@ -13,11 +13,13 @@ from .regression import LineFit, Products, solve
 TURNS = 2
 """Output revolutions after which the sums start over: half orders, where no line can be, tell lines from tones."""
 
-PER_TURN = 2048
+PER_TURN = 4096
 """Angle bins per output revolution."""
 
 HIGHEST_ORDER = 800
-"""Order up to which the bins are fine enough: they weaken it by a fifth."""
+"""Order up to which lines may be teeth's."""
+
+_FINE_ENOUGH = 0.47  # cycles per bin up to which the bins' weakening of a line is made up for
 
 
 def _nothing() -> FloatArray:
@@ -58,7 +60,14 @@ class OrderSpectrum:
     @property
     def amplitudes(self) -> FloatArray:
         """Amplitudes [rad/s²] at the orders 0, 1, 2 …; half orders are left out."""
-        return np.abs(np.fft.rfft(self.sums))[::TURNS][: HIGHEST_ORDER + 1] * (2.0 / max(float(self.counts.sum()), 1.0))
+        return self.every_amplitude[: HIGHEST_ORDER + 1]
+
+    @functools.cached_property
+    def every_amplitude(self) -> FloatArray:
+        """Amplitudes [rad/s²] at the orders 0, 1, 2 … up to the highest that the bins show."""
+        orders = np.arange(round(_FINE_ENOUGH * PER_TURN))
+        found = np.abs(np.fft.rfft(self.sums))[::TURNS][: orders.size]
+        return np.asarray(found * (2.0 / max(float(self.counts.sum()), 1.0)) / np.sinc(orders / PER_TURN))
 
     def products(self, orders: FloatArray) -> Products:
         """Inner products of the lines' columns and the signal.

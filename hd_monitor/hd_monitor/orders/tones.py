@@ -9,10 +9,12 @@ from ..arrays import FloatArray
 MOST_TONES = 4
 """Tones that are removed from a segment at most."""
 
+LONG_ENOUGH = 200
+"""Samples from which tones are looked for."""
+
 _STANDS_OUT = 100.0  # power of a tone over the median of its surroundings
 _SURROUNDINGS = 24  # bins on either side
 _NEAREST = 5  # bins on either side that a tone itself may fill
-_LONG_ENOUGH = 200  # samples
 
 
 def foreign_tones(values: FloatArray, period: float, own: FloatArray, width: float) -> FloatArray:
@@ -34,7 +36,7 @@ def foreign_tones(values: FloatArray, period: float, own: FloatArray, width: flo
     ndarray, shape (tones,)
         The strongest first.
     """
-    if values.size < _LONG_ENOUGH:
+    if values.size < LONG_ENOUGH:
         return np.empty(0)
     spectrum = np.abs(fft.rfft((values - values.mean()) * get_window("hann", values.size))) ** 2
     bin_width = 1.0 / (values.size * period)

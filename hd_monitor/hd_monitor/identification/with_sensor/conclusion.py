@@ -7,6 +7,7 @@ import numpy as np
 from ...arrays import FloatArray
 from ...model.parameters import ParametricModel, StiffnessSeries, Torque
 from ..checks.residual import LineResidual
+from ..checks.something_else import SomethingElse, something_else
 from ..fit.gauss_newton import Fit
 from ..fit.indexes import stiffness_indexes, transmission_errors
 from ..fit.unknowns import Unknowns
@@ -66,11 +67,27 @@ def conclude(context: Context, state: State, fit: Fit) -> Identification:
         load_fluctuation_std=unit * load_std,
         model=None if state.relative else model,
         fit_status=fit.status,
+        something_else=_something_else(context, state),
         limitations=(
             *([state.teeth.doubt] if state.teeth.doubt else []),
             *limitations_of(context, state, fit, indexes),
         ),
         beta_covariance=np.stack([_of_phasors(covariance, part) for part in (u.circular_spline, u.flexspline)]),
+    )
+
+
+def _something_else(context: Context, state: State) -> tuple[SomethingElse, ...]:
+    """What is left of a state's motion by its teeth; with the wrong ones it would be their lines."""
+    if state.teeth.doubt is not None:
+        return ()
+    return something_else(
+        state.teeth.signal,
+        state.teeth.residual,
+        state.tones,
+        context.settings.reducer,
+        context.unknowns.harmonics,
+        None if state.coverage.speed_varies else state.coverage.mean_speed,
+        min(segment.highest_frequency for segment in state.recent),
     )
 
 

@@ -97,7 +97,8 @@ class Estimator:
             residual=left.residual,
             information=state.information.plus(fit.equations, fit.values),
         )
-        state = replace(state, teeth=self._question_teeth(state, fit))
+        anew = state.schedule.restarted == state.seconds
+        state = replace(state, teeth=self._question_teeth(state, fit), tones=state.tones.after(fit.segments, anew=anew))
         state = replace(state, result=conclude(context, state, fit))
         return self.aged(state, sum(item.segment.duration for item in fit.segments))
 

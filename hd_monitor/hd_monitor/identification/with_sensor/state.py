@@ -7,6 +7,7 @@ from ...arrays import BoolArray, FloatArray
 from ...limitation import Limitation
 from ..checks.coverage import Coverage
 from ..checks.residual import LineResidual
+from ..checks.tone_watch import ToneWatch
 from ..fit.information import Information
 from ..fit.noise import NoiseFloor
 from ..fit.unknowns import Unknowns
@@ -59,6 +60,7 @@ class State:
     setup : Setup
     schedule : Schedule
     teeth : ToothWatch
+    tones : ToneWatch
     result : Identification or None
         The newest result.
     unusable : Limitation or None
@@ -75,6 +77,7 @@ class State:
     setup: Setup = field(default_factory=Setup)
     schedule: Schedule = field(default_factory=Schedule)
     teeth: ToothWatch = field(default_factory=ToothWatch)
+    tones: ToneWatch = field(default_factory=ToneWatch)
     result: Identification | None = None
     unusable: Limitation | None = None
 
@@ -128,4 +131,5 @@ class State:
             floor=None if self.floor is None else self.floor.faded(keep),
             residual=self.residual.faded(keep),
             teeth=self.teeth.faded(keep),
+            tones=self.tones.faded(keep),
         )
