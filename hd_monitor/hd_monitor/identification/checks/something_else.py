@@ -29,6 +29,8 @@ _STANDS_OUT = 5.0  # medians of the orders around: 3e-8 by chance
 _MATTERS = 0.2  # of the strongest row's amplitude: what is weaker may be its side lines or its leakage
 _NEAR = 10.0  # widths of a line within which only the largest order counts
 _BLOCK = 256  # orders over which the median is taken, so that a line's own leakage hardly lifts it
+_KNOWN = 0.3  # of a tone's amplitude from which it is the line of a known source, which is loudest near the resonance
+_SLOW = 0.75  # of the mean speed: an order that is too high to be heard even then is hardly real
 _LOWEST_ORDER = 20  # gravity, friction and the load's own orders lie below
 _BESIDE = 3.0  # orders beside a pair of lines that the check of the residual looks at
 _LEAST_TURNS = 0.2  # output revolutions below which orders are too blurred
@@ -75,8 +77,10 @@ def something_else(
     watch: ToneWatch,
     reducer: Reducer,
     harmonics: int,
-    one_speed: float | None,
+    mean_speed: float,
     highest_frequency: float,
+    *,
+    one_speed: bool,
 ) -> tuple[SomethingElse, ...]:
     """List what the model leaves unexplained, the strongest first.
 
@@ -91,30 +95,36 @@ def something_else(
     reducer : Reducer
     harmonics : int
         Line pairs of the model; what is left beside them is the model's own misfit.
-    one_speed : float or None
-        Output speed [rad/s] if it hardly varied; then orders and frequencies are not distinguished.
+    mean_speed : float
+        Of the output [rad/s].
     highest_frequency : float
-        Up to which the samples can be trusted [Hz]; at one speed the images of lines below it stand beyond.
+        Up to which the samples can be trusted [Hz]; the images of lines below it stand beyond.
+    one_speed : bool
+        Whether the speed hardly varied; then orders and frequencies are not distinguished.
     """
     own, width = _own_lines(reducer, harmonics, residual), _width(residual)
-    highest = math.inf if one_speed is None else math.tau * highest_frequency / one_speed
+    highest = math.tau * highest_frequency / (mean_speed if one_speed else _SLOW * mean_speed)
     orders = {order: amplitude for order, amplitude in _orders_left(residual, own) if order <= highest}
     found: list[tuple[float | None, float | None, float]] = []
+
+    def needed(order: int) -> float:
+        return 1.0 if _source(order, None, reducer, harmonics, 0.5 * width) is Source.UNKNOWN else _KNOWN
+
     for tone in watch.lasting:
         low, high = tone.orders
         rivals = [order for order in orders if low - 1.0 <= order <= high + 1.0]
         if tone.at_one_speed:
-            if one_speed is None or own[min(round(low), own.size - 1)]:
+            if not one_speed or own[min(round(low), own.size - 1)]:
                 continue  # what is not heard at other speeds follows the angle
             found.append((0.5 * (low + high), tone.frequency, tone.amplitude))
-        elif max((orders[order] for order in rivals), default=0.0) < tone.amplitude:
-            found.append((None, tone.frequency, tone.amplitude))
-        else:
+        elif any(orders[order] >= needed(order) * tone.amplitude for order in rivals):
             continue
+        else:
+            found.append((None, tone.frequency, tone.amplitude))
         for order in rivals:
             del orders[order]
     for order, amplitude in orders.items():
-        found.append((float(order), None if one_speed is None else order * one_speed / math.tau, amplitude))
+        found.append((float(order), order * mean_speed / math.tau if one_speed else None, amplitude))
 
     power = max(signal.power / max(float(signal.counts.sum()), 1.0), 1e-300)
     least = max(_MATTERS * max((line[2] for line in found), default=0.0), math.sqrt(2.0 * LEAST_SHARE * power))

@@ -86,8 +86,9 @@ def _something_else(context: Context, state: State) -> tuple[SomethingElse, ...]
         state.tones,
         context.settings.reducer,
         context.unknowns.harmonics,
-        None if state.coverage.speed_varies else state.coverage.mean_speed,
+        state.coverage.mean_speed,
         min(segment.highest_frequency for segment in state.recent),
+        one_speed=not state.coverage.speed_varies,
     )
 
 
