@@ -37,7 +37,7 @@ SHARE = 0.02
 """Part of the largest line that an unexplained one must have to matter."""
 
 _STANDS_OUT = 5.0  # medians of the spectrum: 3e-8 by chance
-_STRONG, _AROUND = 0.4, 6  # of the largest amplitude within so many orders
+_STRONG, _AROUND = 0.25, 6  # of the largest amplitude within so many orders
 _LOWEST_ORDER = 20  # gravity, friction and the load's own orders lie below
 
 
@@ -117,7 +117,11 @@ class ToothWatch:
         if ranking.lead(own) > LEAD and (best.teeth in shown or (best.pairs_found > 1 and not one_speed)):
             return replace(looked, doubt=ranking.contradiction(given))
         open_to = set(asked) if self.signal.turns < APART and not one_speed else shown
-        near = [teeth for teeth in ranking.contenders(own, LEAD) if teeth in open_to and abs(teeth[0] - own[0]) < NEAR]
+        near = [
+            teeth
+            for teeth in ranking.contenders(own, LEAD)
+            if teeth in open_to and abs(teeth[0] - own[0]) < NEAR and (teeth.is_in_catalogue or not own.is_in_catalogue)
+        ]
         if not near:
             return replace(looked, doubt=None)
         if seconds < GROWTH * self.tried:
