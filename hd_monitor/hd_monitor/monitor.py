@@ -16,6 +16,7 @@ from .diagnosis.absence import lost, not_enough, nothing_received, with_assumed_
 from .diagnosis.judge import Judge
 from .diagnosis.verdict import Verdict
 from .evidence import Evidence
+from .history.rating import Baseline, rated
 from .identification.identifier import Identifier
 from .identification.sensorless.identifier import SensorlessIdentifier
 from .settings import JointSettings
@@ -33,6 +34,8 @@ class Monitor:
 
     Attributes
     ----------
+    baseline : mapping or None
+        The lines of this reducer as they should be, where that is known.
     latest : Assessment or None
         The newest assessment, if any.
 
@@ -59,6 +62,7 @@ class Monitor:
         self._presence = Presence(settings.sources, round(settings.input.timeout * NANOSECONDS))
         self._evidence = Evidence(settings, identifier)
         self._judge = Judge(settings)
+        self.baseline: Baseline | None = None
         self.latest: Assessment | None = None
 
     # Feeding -------------------------------------------------------------------------------------------------------
@@ -124,6 +128,7 @@ class Monitor:
         self._judge = Judge(self.settings)
         self._recorder.cut()
         self._evidence = Evidence(self.settings)
+        self.baseline = None
 
     # One period ----------------------------------------------------------------------------------------------------
 
@@ -151,6 +156,7 @@ class Monitor:
                 fault=self._recorder.last_fault,
             )
             verdict = self._judge.judge(found, otherwise)
+            verdict = rated(verdict, found, self.baseline, self.settings.diagnosis)
             if found is not None and self._recorder.torque_source == "assumed":
                 verdict = with_assumed_torque(verdict, self.settings.load.torque)
         self.latest = self._pack(period.end, verdict, assembled)

@@ -33,6 +33,7 @@ class FaultCode(StrEnum):
     CIRCULAR_SPLINE = "HD_CIRCULAR_SPLINE"
     BOTH_SPLINES = "HD_BOTH_SPLINES"
     WAITING = "HD_WAITING"
+    UNRATED = "HD_UNRATED"
     UNDETERMINED = "HD_UNDETERMINED"
     INPUT_LOST = "HD_INPUT_LOST"
     INPUT_INVALID = "HD_INPUT_INVALID"
@@ -80,9 +81,16 @@ class Verdict:
     cause: Cause = Cause.NONE
 
     @classmethod
-    def naming(cls, component: Component, level: Level, reason: str, cause: Cause = Cause.NONE) -> Self:
-        """Return the verdict whose fault code says no more than its component."""
-        return cls(component=component, level=level, fault_code=_FAULT_CODES[component], reason=reason, cause=cause)
+    def naming(
+        cls, component: Component, level: Level, reason: str, cause: Cause = Cause.NONE, *, rated: bool = False
+    ) -> Self:
+        """Return the verdict whose fault code says no more than its component.
+
+        A relative one says nothing of the size of a defect, unless it is `rated` against a baseline.
+        """
+        unrated = cause is Cause.RELATIVE and not rated
+        code = FaultCode.UNRATED if unrated else _FAULT_CODES[component]
+        return cls(component=component, level=level, fault_code=code, reason=reason, cause=cause)
 
     @classmethod
     def waiting(cls, reason: str) -> Self:

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..identification.result import LineEstimate
+from ..identification.sensorless.agreement import DirectionEvidence
 from ..reducer import LinePair
 from .entry import Entry, Kind
 
@@ -106,7 +107,7 @@ def _readings(entry: Entry) -> Iterator[tuple[str, str, float, float, float, flo
     if entry.transmission_error is not None and entry.transmission_error_std is not None:
         error, std = entry.transmission_error, entry.transmission_error_std
         yield from _both("transmission error", "arcmin", error, std, entry.transmission_error_limits)
-    for line in _lines(entry):
+    for line in lines_of(entry.lines, entry.evidence):
         yield from _both(f"line {line.k}", "signal's", line.amplitude, line.std, none)
         if line.k == 1 and min(line.amplitude) > 0.0:
             relative = [s / a for a, s in zip(line.amplitude, line.std, strict=True)]
@@ -122,12 +123,12 @@ def _both(
         yield (f"{spline.replace('_', ' ')} {name}", unit, getattr(value, spline), getattr(std, spline), *limits)
 
 
-def _lines(entry: Entry) -> Iterator[LineEstimate]:
-    """Lines of the entry's own motion; from joint states alone the pooled ones hold earlier motion too."""
-    if not entry.evidence:
-        yield from entry.lines
-    for k in sorted({piece.k for piece in entry.evidence}):
-        pieces = [piece for piece in entry.evidence if piece.k == k]
+def lines_of(lines: Sequence[LineEstimate], evidence: Sequence[DirectionEvidence]) -> Iterator[LineEstimate]:
+    """Lines of the newest motion; from joint states alone the pooled `lines` hold earlier motion too."""
+    if not evidence:
+        yield from lines
+    for k in sorted({piece.k for piece in evidence}):
+        pieces = [piece for piece in evidence if piece.k == k]
         amplitude = np.mean([piece.amplitude for piece in pieces], axis=0)
         std = np.sqrt(np.square([piece.std for piece in pieces]).sum(axis=0)) / len(pieces)
         yield LineEstimate(k=k, amplitude=LinePair(*amplitude.tolist()), std=LinePair(*std.tolist()))

@@ -84,8 +84,8 @@ def change_of(series: Series) -> Change | None:
         return None
     later = np.arange(np.flatnonzero(base)[-1] + 1, base.size)
     newest = later[-min(int(base.sum()), later.size) :]
-    before, before_std, widened = _mean(series.values[base], series.stds[base])
-    after, after_std, _ = _mean(series.values[newest], series.stds[newest] * widened)
+    before, before_std, widened = weighted_mean(series.values[base], series.stds[base])
+    after, after_std, _ = weighted_mean(series.values[newest], series.stds[newest] * widened)
     deviation = abs(after - before) / math.hypot(before_std, after_std)
     freedom = max(int(base.sum()) + newest.size - 2, 1) if widened > 1.0 else 1000
     return Change(before, before_std, after, after_std, float(2.0 * t_distribution.sf(deviation, freedom)))
@@ -160,13 +160,21 @@ def _time_to_limit(series: Series) -> tuple[float, float] | None:
     return max(first, 0.0), last
 
 
-def _mean(values: FloatArray, stds: FloatArray) -> tuple[float, float, float]:
-    """Weighted mean, its standard deviation widened where the values scatter by more than theirs, and by how much."""
+class Mean(NamedTuple):
+    """A weighted mean, its standard deviation widened where the values scatter by more than theirs, and by how much."""
+
+    value: float
+    std: float
+    widened: float
+
+
+def weighted_mean(values: FloatArray, stds: FloatArray) -> Mean:
+    """Average values by their precision."""
     weights = stds**-2.0
     mean = float(weights @ values / weights.sum())
     excess = float(weights @ (values - mean) ** 2) / (values.size - 1) if values.size > 1 else 1.0
     widened = math.sqrt(max(excess, 1.0))
-    return mean, widened / math.sqrt(float(weights.sum())), widened
+    return Mean(mean, widened / math.sqrt(float(weights.sum())), widened)
 
 
 class _Line(NamedTuple):

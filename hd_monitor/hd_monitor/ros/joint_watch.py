@@ -106,6 +106,8 @@ class JointWatch:
                     self._inputs.add(quantity, new)
                     if now:  # else a simulated clock has not begun
                         self._presence.note(quantity, now, now if stamps.get(quantity) != before else None)
+            if self._memory is not None:
+                self._monitor.baseline = self._memory.baseline
             assessments = self._monitor.advance()
             for assessment in assessments:
                 self._show(self._explained(assessment, now))

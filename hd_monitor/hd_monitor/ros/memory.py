@@ -7,6 +7,7 @@ from ..assessment import Assessment
 from ..history.diary import Diary
 from ..history.entry import Entry, Kind
 from ..history.ledger import Ledger, LedgerError
+from ..history.rating import Baseline, baseline_of
 from ..identification.sensorless.agreement import DirectionEvidence
 from ..settings import JointSettings
 
@@ -31,6 +32,8 @@ class Memory:
         The newest entry with a verdict on this reducer, as of the start or of the last exchange.
     evidence : tuple of tuple of DirectionEvidence
         Lines by direction of earlier motion, the oldest first; from joint states alone.
+    baseline : mapping or None
+        Lines of the baseline, once it is set or complete.
     """
 
     def __init__(self, joint: str, settings: JointSettings, complain: Callable[[str], None]) -> None:
@@ -43,6 +46,7 @@ class Memory:
         self._ledger: Ledger | None = None
         self.last: Entry | None = None
         self.evidence: tuple[tuple[DirectionEvidence, ...], ...] = ()
+        self.baseline: Baseline | None = None
 
         def read() -> None:
             self._ledger = Ledger(Path(settings.history.path).expanduser())
@@ -50,6 +54,7 @@ class Memory:
             self.last = next((entry for entry in reversed(known) if entry.verdict is not None), None)
             alike = [entry for entry in known if entry.kind is Kind.EVIDENCE and entry.source == settings.input.source]
             self.evidence = tuple(entry.evidence for entry in alike if entry.evidence)
+            self._find_baseline()
 
         self._try(read)
 
@@ -58,6 +63,8 @@ class Memory:
         self._newest = assessment
         if entry := self._diary.note(assessment):
             self._append(entry)
+            if self.baseline is None:
+                self._try(self._find_baseline)
 
     def close(self) -> None:
         """Write what followed the last entry, and close the file."""
@@ -70,9 +77,14 @@ class Memory:
     def mark(self, kind: Kind, at: float) -> None:
         """Note an exchange or a baseline at a time [s]."""
         if kind is Kind.EXCHANGE:
-            self.last, self.evidence = None, ()
+            self.last, self.evidence, self.baseline = None, (), None
         if (ledger := self._ledger) is not None:
             self._try(lambda: ledger.mark(self._serial, self._joint, kind, at))
+            self._try(self._find_baseline)
+
+    def _find_baseline(self) -> None:
+        if self._ledger is not None:
+            self.baseline = baseline_of(self._ledger.entries(self._serial, self._joint))
 
     def _append(self, entry: Entry) -> None:
         if (ledger := self._ledger) is not None:

@@ -154,6 +154,17 @@ class DiagnosisSettings:
     error_transmission_error: float = number(
         3.0, "arcmin", 0.01, 600.0, "transmission error, peak to peak, above which a spline is defective"
     )
+    warn_growth: float = number(
+        0.3,
+        "",
+        0.01,
+        100.0,
+        "growth of a spline's first line against the baseline (fraction) above which it is suspect, where the indexes "
+        "are relative",
+    )
+    error_growth: float = number(
+        1.0, "", 0.01, 100.0, "growth of a spline's first line (fraction) above which it is defective"
+    )
     both_ratio: float = number(
         0.87,
         "",
@@ -177,7 +188,7 @@ class DiagnosisSettings:
 
     def __post_init__(self) -> None:
         """Refuse limits that contradict each other."""
-        for reading in ("index", "transmission_error"):
+        for reading in ("index", "transmission_error", "growth"):
             warn, error = getattr(self, f"warn_{reading}"), getattr(self, f"error_{reading}")
             if error < warn:
                 raise ParameterError(

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from tests.hd_monitor.ros.test_joint_watch import alone, explain
 
+from hd_monitor.errors import ParameterError
 from hd_monitor.history.entry import Kind
 from hd_monitor.history.ledger import Ledger
 from hd_monitor.ros.joint_watch import JointWatch
@@ -128,3 +129,24 @@ def test_a_ledger_that_cannot_be_opened_costs_no_verdict(
     (complaint,) = complaints
     assert complaint.startswith("elbow: the history is not kept: ")
     assert "cannot be opened" in complaint
+
+
+def test_a_baseline_rates_what_joint_states_alone_show(start_watch: Callable[..., JointWatch]) -> None:
+    watch = start_watch(DAY, history__interval=20.0)
+    swing(watch, DAY, 60.0)
+    assert watch.status().value("fault_code") == "HD_UNRATED"
+    watch.set_baseline()
+    swing(watch, DAY + 60.0, 10.0)
+    assert watch.status().value("fault_code") == "HD_OK"
+    watch.close()
+    grown = start_watch(2 * DAY, analysis__memory=60.0)
+    swing(grown, 2 * DAY, 60.0, line=0.45)
+    status = grown.status()
+    assert (status.level, status.value("fault_code")) == (1, "HD_CIRCULAR_SPLINE")
+    assert "The circular spline's line has grown" in status.message
+
+
+def test_a_baseline_needs_a_ledger() -> None:
+    watch = JointWatch("elbow", JointSettings.from_mapping(), SECOND, explain, alone)
+    with pytest.raises(ParameterError, match=r"history\.path is empty"):
+        watch.set_baseline()

@@ -1,0 +1,103 @@
+"""Without a torque a line's size says nothing; its growth against the baseline does."""
+
+import math
+from collections.abc import Mapping, Sequence
+
+from scipy.stats import norm
+
+from ..diagnosis.verdict import Cause, Component, FaultCode, Level, Verdict
+from ..identification.result import Identification
+from ..limitation import LimitationCode
+from ..settings.groups import DiagnosisSettings
+from .entry import Entry, Kind
+from .series import lines_of, series_of
+from .trend import Mean, weighted_mean
+
+CHANCE = 1e-3
+"""Probability of noise alone making a line seem so much larger, below which it has grown."""
+
+SMALLEST = 0.5
+"""Part of the larger line, in the baseline, to which the growth of a smaller one is related: next to nothing doubles
+easily."""
+
+_NAMES = {Component.FLEXSPLINE: "flexspline", Component.CIRCULAR_SPLINE: "circular spline"}
+_NO_NAME = {
+    LimitationCode.NO_LINE_FOUND,
+    LimitationCode.LINES_TOO_SIMILAR,
+    LimitationCode.DIRECTIONS_DISAGREE,
+    LimitationCode.RECORDINGS_DISAGREE,
+}
+"""What leaves open which line is the larger one, but not whether one has grown."""
+
+
+Baseline = Mapping[Component, Mean]
+"""Amplitude of each spline's first line in the baseline."""
+
+
+def baseline_of(entries: Sequence[Entry]) -> Baseline | None:
+    """Return the first pair in the baseline; None as long as it is neither set nor complete."""
+    found = {series.name: series for series in series_of(entries)}
+    is_set = any(entry.kind is Kind.BASELINE for entry in entries)
+    references = {}
+    for component, name in _NAMES.items():
+        series = found.get(f"{name} line 1")
+        if series is None or not series.is_baseline.any() or (series.is_baseline.all() and not is_set):
+            return None
+        base = series.is_baseline
+        references[component] = weighted_mean(series.values[base], series.stds[base])
+    return references
+
+
+def rated(
+    verdict: Verdict, found: Identification | None, baseline: Baseline | None, limits: DiagnosisSettings
+) -> Verdict:
+    """Return the verdict with the level that the growth of the lines against the baseline calls for.
+
+    Absolute verdicts stay as they are, and so do those on data that say nothing of growth.
+    """
+    if baseline is None or found is None or not found.relative or not _may_be_rated(verdict, found):
+        return verdict
+    growth = _growth(found, baseline)
+    if growth is None:
+        return verdict
+    told = ", ".join(f"{_NAMES[part]} {100 * size:+.0f} ± {100 * std:.0f} %" for part, (size, std) in growth.items())
+    told += f" against the baseline, warn limit {100 * limits.warn_growth:g} %"
+    surely = float(norm.isf(CHANCE))
+    grown = {part: size for part, (size, std) in growth.items() if size >= limits.warn_growth and size > surely * std}
+    if not grown:
+        if max(std for _, std in growth.values()) * surely > limits.warn_growth:
+            return verdict  # such a growth could have been missed
+        return Verdict(
+            component=Component.NONE,
+            level=Level.OK,
+            fault_code=FaultCode.OK,
+            reason=f"Neither spline's line has grown ({told})",
+            cause=Cause.RELATIVE,
+        )
+    largest = max(grown, key=lambda part: grown[part])
+    both = len(grown) == 2 and min(grown.values()) >= limits.both_ratio * grown[largest]
+    level = Level.ERROR if grown[largest] >= limits.error_growth else Level.WARN
+    who = "Both splines' lines have" if both else f"The {_NAMES[largest]}'s line has"
+    part = Component.BOTH if both else largest
+    return Verdict.naming(part, level, f"{who} grown ({told})", Cause.RELATIVE, rated=True)
+
+
+def _may_be_rated(verdict: Verdict, found: Identification) -> bool:
+    if verdict.fault_code is FaultCode.UNRATED:
+        return True
+    codes = {blocker.code for blocker in found.blockers}
+    return verdict.fault_code is FaultCode.UNDETERMINED and bool(codes) and codes <= _NO_NAME
+
+
+def _growth(found: Identification, baseline: Baseline) -> dict[Component, tuple[float, float]] | None:
+    """Growth of each spline's first line as a fraction, and its standard deviation; None without lines."""
+    line = next((line for line in lines_of(found.lines, found.evidence) if line.k == 1), None)
+    if line is None:
+        return None
+    growth = {}
+    larger = max(base.value for base in baseline.values())
+    for part, base in baseline.items():
+        amplitude, std = (getattr(pair, part.value) for pair in (line.amplitude, line.std))
+        size = max(base.value, SMALLEST * larger)
+        growth[part] = (amplitude - base.value) / size, math.hypot(std * base.widened, base.std) / size
+    return growth
