@@ -57,7 +57,8 @@ class Suspicion:
         return self._asked[1]
 
     def _qualified(self, found: Identification) -> Identification:
-        if (period := self._period) is None:
+        period = self._period
+        if period is None or not found.samples:  # what keeps all samples from being used is the cause itself
             return found
         flaw = doubt(LimitationCode.SENSOR_SILENT) if self._silent else vibration_flaw(period.vibration)
         cause = None

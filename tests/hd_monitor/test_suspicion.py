@@ -16,7 +16,7 @@ from hd_monitor.suspicion import Suspicion
 
 SETTINGS = JointSettings.from_mapping({})
 MODEL = ParametricModel(flexspline=StiffnessSeries((0.03,)), circular_spline=StiffnessSeries((0.035,)))
-NOTHING = Identification.none((), relative=False)
+NOTHING = replace(Identification.none((), relative=False), samples=12_000)
 SOUND = replace(NOTHING, signal_to_noise=20.0)
 TORQUE = replace(NOTHING, limitations=(blocker(LimitationCode.TORQUE_TOO_SMALL),))
 RNG = np.random.default_rng(3)
@@ -70,6 +70,8 @@ def test_what_is_sound_is_not_suspected(swing: Record) -> None:
     assert suspicion.qualified(SOUND) is SOUND
     assert suspicion.qualified(TORQUE) is TORQUE
     assert Suspicion(SETTINGS).qualified(SOUND) is SOUND
+    unused = replace(TORQUE, samples=0)
+    assert suspecting(periods(with_noise(swing, 1.0))).qualified(unused) is unused
 
 
 def test_a_sensor_that_falls_silent_is_named_until_it_is_heard_again(swing: Record) -> None:
