@@ -49,10 +49,11 @@ def _size(values: FloatArray) -> float:
 def effort_flaw(samples: JointSamples) -> Limitation | None:
     """Return what makes efforts unfit for a measured torque; None if nothing does."""
     known = np.isfinite(samples.effort)
-    times, effort = samples.times[known], samples.effort[known]
+    times, effort, forward = samples.times[known], samples.effort[known], samples.speed[known] > 0.0
     if times.size < _FEWEST:
         return None
-    changes = int(np.count_nonzero(np.diff(effort)))
+    reverses = forward[1:] != forward[:-1]  # there friction changes its sign, and a constant effort with it
+    changes = int(np.count_nonzero(np.diff(effort)[~reverses]))
     held = float(times[-1] - times[0]) / max(changes, 1)
     if 0 < changes < (1.0 - _HELD) * effort.size and held > _SELDOM:
         return blocker(LimitationCode.EFFORT_HELD, held_s=held)

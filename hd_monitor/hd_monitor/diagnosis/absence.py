@@ -28,14 +28,14 @@ def _listed(quantities: Iterable[Quantity]) -> str:
     return " and no ".join(_WORDS[quantity] for quantity in quantities)
 
 
+_UNITS = (("days", 86_400), ("hours", 3600), ("minutes", 60))
+
+
 def remembered(verdict: Verdict, age: float, waiting: Verdict) -> Verdict:
     """Return the last verdict of an earlier run, of `age` [s], as long as this one is `waiting` for its own."""
     unit, size = next(((u, s) for u, s in _UNITS if age >= 2 * s), ("seconds", 1))
     reason = f"{verdict.reason} (last verdict, {age / size:.0f} {unit} ago; now: {waiting.sentence})"
     return replace(verdict, reason=reason)
-
-
-_UNITS = (("days", 86_400), ("hours", 3600), ("minutes", 60))
 
 
 def nothing_received(absent: Sequence[Quantity], timeout: float) -> Verdict:

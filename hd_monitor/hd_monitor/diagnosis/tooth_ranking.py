@@ -15,7 +15,7 @@ class ConcludedRanking(ToothPairRanking):
     ----------
     as_pair : float
         Log odds of the first pair's two lines against a single line: near 0 if only one stands out, or if the travel
-        does not part them.
+        does not separate them.
     travel : float
         Range of the output angle covered [rad].
     speed : float

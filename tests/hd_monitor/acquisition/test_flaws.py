@@ -70,9 +70,10 @@ def test_sound_motion_has_no_flaw(sound):
         (10.0 + 20.0 * RNG.standard_normal(EVEN.size), LimitationCode.EFFORT_NOISY),
         (10.0 + RNG.standard_normal(EVEN.size), None),
         (np.full(EVEN.size, 10.0), None),
+        (10.0 + 2.0 * np.sign(np.cos(2.0 * EVEN)), None),
         (np.full(EVEN.size, np.nan), None),
     ],
-    ids=["held", "noisy", "sound", "constant", "none"],
+    ids=["held", "noisy", "sound", "constant", "friction", "none"],
 )
 def test_efforts_unfit_for_a_torque_are_named(effort, code):
     found = effort_flaw(samples(effort=effort))

@@ -24,7 +24,7 @@ MOTOR_REACH = 4
 """Orders around the motor's in which load fluctuations and the coupling with the lines put lines, too."""
 
 NEIGHBOURS = (-4, -3, -2, -1, 1, 2, 3, 4)
-"""Tooth numbers, relative to those given, that share a line with them or lie where travel does not part them."""
+"""Tooth numbers, relative to those given, that share a line with them or lie where travel does not separate them."""
 
 STRONGEST = 4
 """Pairs with the strongest lines that are compared with the one given."""
