@@ -95,6 +95,10 @@ class Evidence:
         if not period.records:
             self._steady.interrupt()
 
+    def finish(self) -> None:
+        """Use what is still waiting to become a longer segment."""
+        self._identifier.finish()
+
     @property
     def identification(self) -> Identification | None:
         """What has been identified; None as long as nothing could be."""

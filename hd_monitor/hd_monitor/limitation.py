@@ -10,12 +10,11 @@ class LimitationCode(StrEnum):
 
     # What was given contradicts the data
     NATURAL_FREQUENCY_CORRECTED = "natural_frequency_corrected"
-    NATURAL_FREQUENCY_CONTRADICTED = "natural_frequency_contradicted"
     DAMPING_CORRECTED = "damping_corrected"
     MOTION_STAMPS_LAG = "motion_stamps_lag"
     VIBRATION_STAMPS_LAG = "vibration_stamps_lag"
-    TORQUE_TOO_SMALL = "torque_too_small"
-    TORQUE_TOO_LARGE = "torque_too_large"
+    TORQUE_CORRECTED = "torque_corrected"
+    TORQUE_CONTRADICTED = "torque_contradicted"
     TORQUE_ABSURD = "torque_absurd"
     TEETH_CONTRADICTED = "teeth_contradicted"
     TEETH_CONTRADICTED_VAGUELY = "teeth_contradicted_vaguely"
@@ -41,17 +40,16 @@ class LimitationCode(StrEnum):
     VELOCITY_SCALE = "velocity_scale"
     VIBRATION_CONSTANT = "vibration_constant"
     SEGMENT_UNUSABLE = "segment_unusable"
+    INERTIA_UNFOLLOWED = "inertia_unfollowed"
+    INERTIA_MOVES = "inertia_moves"
+    SEGMENTS_DISAGREE = "segments_disagree"
     # What the signal does not show
     LINES_BEYOND_BANDWIDTH = "lines_beyond_bandwidth"
     LINES_PARTLY_HEARD = "lines_partly_heard"
-    TRAVEL_TOO_SHORT = "travel_too_short"
-    MOTION_TOO_SHORT = "motion_too_short"
     LINES_TOO_WEAK = "lines_too_weak"
     LINES_ABSENT = "lines_absent"
     # What the model does not explain
-    LINES_UNEXPLAINED = "lines_unexplained"
     UNCERTAINTY_WIDENED = "uncertainty_widened"
-    NEAR_RESONANCE = "near_resonance"
     OTHER_PART = "other_part"
     # What joint states alone do not show
     SIGNAL_MISSING = "signal_missing"
@@ -70,11 +68,8 @@ class LimitationCode(StrEnum):
 
 NOT_YET = frozenset(
     {
-        LimitationCode.TRAVEL_TOO_SHORT,
-        LimitationCode.MOTION_TOO_SHORT,
-        LimitationCode.LINES_PARTLY_HEARD,
         LimitationCode.LINES_TOO_WEAK,
-        LimitationCode.NEAR_RESONANCE,
+        LimitationCode.INERTIA_MOVES,
         LimitationCode.ONE_STROKE,
         LimitationCode.NO_LINE_FOUND,
         LimitationCode.LINES_TOO_SIMILAR,

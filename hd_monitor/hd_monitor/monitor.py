@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
@@ -14,7 +15,7 @@ from .assessment import Assessment
 from .contract import NANOSECONDS, Block
 from .diagnosis.absence import lost, not_enough, nothing_received, with_assumed_torque
 from .diagnosis.judge import Judge
-from .diagnosis.verdict import Verdict
+from .diagnosis.verdict import FaultCode, Verdict
 from .evidence import Evidence
 from .history.rating import Baseline, rated
 from .identification.identifier import Identifier
@@ -102,16 +103,29 @@ class Monitor:
         return [self._assess(period) for period in self._intake.complete()]
 
     def finish(self) -> Assessment | None:
-        """Return what a node would show at the end of the data; a bag shorter than a period is assessed as it is."""
+        """Take a last look at all data and return the final assessment; None if there is nothing to assess.
+
+        What is left is assessed although its period, or the segment of motion it is part of, is not complete. The
+        evidence will not change any more, so its verdict needs no further one to confirm it.
+        """
         self.advance()
-        if self.latest is None:
-            last = max(self._intake.newest.values(), default=0)
-            for period in self._intake.rest():
-                self._assess(period, now=min(period.end, last))  # what follows the data is no silence
+        for period in self._intake.rest():
+            newest = [int(samples.stamps.max()) for samples in period.samples.values() if samples.stamps.size]
+            if self.latest is None or len(newest) == len(period.samples):  # one input alone adds nothing
+                self._assess(period, now=max(newest, default=period.start))  # what follows the data is no silence
+        self._evidence.finish()
+        if self.latest is None or self.latest.verdict.fault_code in (FaultCode.INPUT_LOST, FaultCode.INPUT_INVALID):
+            return self.latest
+        verdict = self.latest.verdict
+        if (found := self._evidence.identification) is not None:
+            verdict = rated(self._judge.conclude(found), found, self.baseline, self.settings.diagnosis)
+            verdict = self._with_torque(verdict)
+        self.latest = replace(self.latest, identification=found, verdict=verdict)
         return self.latest
 
     def silence(self, now: int) -> Assessment:
         """Say that nothing came for ``input.timeout`` until `now` [ns] by the caller's clock; the evidence is kept."""
+        self._evidence.finish()
         return self._pack(now, nothing_received(self._presence.absent, self._presence.timeout), None)
 
     def change_limits(self, settings: JointSettings) -> None:
@@ -157,10 +171,15 @@ class Monitor:
             )
             verdict = self._judge.judge(found, otherwise)
             verdict = rated(verdict, found, self.baseline, self.settings.diagnosis)
-            if found is not None and self._recorder.torque_source == "assumed":
-                verdict = with_assumed_torque(verdict, self.settings.load.torque)
+            if found is not None:
+                verdict = self._with_torque(verdict)
         self.latest = self._pack(period.end, verdict, assembled)
         return self.latest
+
+    def _with_torque(self, verdict: Verdict) -> Verdict:
+        if self._recorder.torque_source != "assumed":
+            return verdict
+        return with_assumed_torque(verdict, self.settings.load.torque)
 
     def _pack(self, stamp: int, verdict: Verdict, assembled: AssembledPeriod | None) -> Assessment:
         evidence = self._evidence

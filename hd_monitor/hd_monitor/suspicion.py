@@ -17,7 +17,7 @@ from .settings import JointSettings
 RECENT = 16.0
 """Time [s] that is looked at."""
 
-_TORQUE = {LimitationCode.TORQUE_TOO_SMALL, LimitationCode.TORQUE_TOO_LARGE}
+_TORQUE = {LimitationCode.TORQUE_CONTRADICTED}
 _FELL = 0.25  # of the level before: a quieter vibration is asked whether it still holds lines
 _HEARD, _UNHEARD = 0.5, 0.15  # part of the power that lines explain where a sensor hears the joint, and where not
 _DOUBTFUL = 0.0  # dB of signal to noise: the model explains less than half of the power

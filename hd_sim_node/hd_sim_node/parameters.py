@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from hd_monitor.model import Dynamics
 from hd_monitor.parameter import Parameter, choice, number, parameters_of, plain, table
 from hd_monitor.reducer import Reducer
 from hd_monitor.settings import NODE_PARAMETERS as MONITOR_NODE_PARAMETERS
@@ -95,7 +96,7 @@ PARAMETERS = (
     *(parameter for kind in PROGRAMMES.values() for parameter in kind.parameters),
     # The reducer and its dynamics are the monitor's own parameters, so that one file serves both nodes.
     *(p for p in MONITOR_PARAMETERS if p.name.removeprefix("reducer.") in Reducer.__dataclass_fields__),
-    *(p for p in MONITOR_PARAMETERS if p.name.startswith("dynamics.") and p.name != "dynamics.refine"),
+    *(p for p in MONITOR_PARAMETERS if p.name.removeprefix("dynamics.") in Dynamics.__dataclass_fields__),
     *_beta("flexspline"),
     *_error("flexspline", "its lines"),
     *_beta("circular_spline"),

@@ -26,6 +26,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from tests.simulated.cases import Case, random_case, simulate
 
 from hd_monitor.acquisition.record import Record
+from hd_monitor.arrays import BoolArray, FloatArray
 from hd_monitor.diagnosis.absence import WAITING
 from hd_monitor.diagnosis.judge import Judge
 from hd_monitor.diagnosis.verdict import Component
@@ -35,7 +36,9 @@ from hd_monitor.identification.fit.gauss_newton import Fit, Problem
 from hd_monitor.identification.identifier import Identifier
 from hd_monitor.identification.segment import decimation, segment
 from hd_monitor.identification.with_sensor import estimator, search
+from hd_monitor.identification.with_sensor.context import Context
 from hd_monitor.identification.with_sensor.estimator import Estimator
+from hd_monitor.identification.with_sensor.state import Setup, State
 from hd_monitor.process import set_up_process
 
 Patch = Callable[[], contextlib.AbstractContextManager[object]]
@@ -46,9 +49,21 @@ def without(target: object, name: str, new: object) -> Patch:
     return lambda: mock.patch.object(target, name, new)
 
 
-def fit_only(self: Estimator, state: object, fit: Fit) -> tuple[object, Fit]:
-    """Replace a check that is switched off."""
-    return state, fit
+def one_start(context: Context, state: State, fit: Fit | None) -> tuple[State, Fit]:
+    """Look for no other solution; the first segment is fitted from a single start."""
+    if fit is not None:
+        return state, fit
+    return REAL_RESTART(context, state, multistart.signal_level(state.recent), [state.values])
+
+
+def best_only(self: Problem, starts: Sequence[FloatArray], *, rounds: int) -> tuple[Fit, None]:
+    """Forget all solutions but the best."""
+    return REAL_CONTEND(self, starts, rounds=rounds)[0], None
+
+
+def phasors_only(self: Context, setup: Setup) -> BoolArray:
+    """Take all that is given as exact."""
+    return self.unknowns.mask(self.unknowns.stiffness, self.unknowns.load, self.unknowns.displacement)
 
 
 def plain_decimation(raw: np.ndarray, period: float, line: float, natural: float) -> object:
@@ -56,7 +71,7 @@ def plain_decimation(raw: np.ndarray, period: float, line: float, natural: float
     return REAL_DECIMATION(raw, period, 1e9, 1e9)
 
 
-REAL_DECIMATION = decimation.decimate
+REAL_DECIMATION, REAL_RESTART, REAL_CONTEND = decimation.decimate, search.restart, Problem.contend
 
 MECHANISMS: dict[str, tuple[str, Patch]] = {
     "linear last step": (
@@ -74,7 +89,7 @@ MECHANISMS: dict[str, tuple[str, Patch]] = {
     ),
     "second look": (
         "other solutions are tried where the fit is poor",
-        without(estimator, "look_elsewhere", lambda c, s, f: (s, f)),
+        without(estimator, "look_elsewhere", one_start),
     ),
     "sensor sign": (
         "a sensor mounted the other way round is recognised",
@@ -85,10 +100,11 @@ MECHANISMS: dict[str, tuple[str, Patch]] = {
         without(search, "other_starts", lambda *a, **k: []),
     ),
     "starts for the load": ("the load's phase has its own starts", without(multistart, "START_LOADS", ())),
-    "score tests": (
-        "what was given is estimated where the data contradict it",
-        without(Estimator, "_question", fit_only),
+    "given scalars": (
+        "natural frequency, damping, torque, inertia and clocks are estimated along",
+        without(Context, "active", phasors_only),
     ),
+    "rival": ("a second solution that is not excluded widens the intervals", without(Problem, "contend", best_only)),
     "line residual": (
         "intervals are widened by what is left at the lines",
         without(LineResidual, "inflation", lambda self, span: 1.0),

@@ -16,7 +16,9 @@ from hd_monitor.sources import Quantity
 EPOCH = 1_700_000_000_250_000_000
 RATE = 1000
 BLOCK = 100
-SETTINGS = JointSettings.from_mapping({"reducer.serial": "SHG-20-80 no. 7"})
+PAPER = {"reducer.transmission_error": 0.0}
+"""The recording is of the paper's world, where only the stiffness fluctuates."""
+SETTINGS = JointSettings.from_mapping(PAPER | {"reducer.serial": "SHG-20-80 no. 7"})
 
 SOUND, WORN = (0.012, 0.008, 0.004), (0.075, 0.045, 0.03)
 UNITS = {

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from tests.hd_monitor.monitored import BLOCK, EPOCH, SETTINGS, UNITS, Recording, latest, run
+from tests.hd_monitor.monitored import BLOCK, EPOCH, PAPER, SETTINGS, UNITS, Recording, latest, run
 
 from hd_monitor.assessment import Assessment
 from hd_monitor.diagnosis.status import Status, status_of
@@ -119,6 +119,20 @@ def test_a_recording_shorter_than_a_period_is_assessed(recording: Recording) -> 
     assert monitor.finish() is not None
 
 
+def test_a_clip_of_a_second_and_a_third_gets_its_verdict_in_the_end() -> None:
+    """Shorter than the segments of motion that a node waits for, and no second look to confirm it."""
+    clip = Recording(Component.FLEXSPLINE, rpm=1500.0, seconds=1.3)
+    monitor = Monitor(SETTINGS)
+    clip.feed_motion(monitor)
+    for block in clip.blocks():
+        monitor.add_block(block)
+    assert all(said.verdict.fault_code is FaultCode.WAITING for said in monitor.advance())
+    last = monitor.finish()
+    assert last is not None
+    assert last.identification is not None
+    assert last.verdict.component is Component.FLEXSPLINE
+
+
 def test_reset_forgets_the_evidence_but_not_the_counters(recording: Recording) -> None:
     monitor = run(recording)
     monitor.reset()
@@ -142,7 +156,7 @@ def test_zoom_spectrum_and_rms_curve(recording: Recording) -> None:
 
 
 def test_without_any_torque_the_result_is_relative(recording: Recording) -> None:
-    settings = JointSettings.from_mapping({"load.source": "unknown"})
+    settings = JointSettings.from_mapping(PAPER | {"load.source": "unknown"})
     assessment = latest(run(recording, settings=settings))
     assert assessment.identification is not None
     assert assessment.identification.relative

@@ -4,7 +4,7 @@ import tracemalloc
 
 import numpy as np
 import pytest
-from tests.hd_monitor.monitored import BLOCK, EPOCH, RATE, SETTINGS, Recording, latest, run
+from tests.hd_monitor.monitored import BLOCK, EPOCH, PAPER, RATE, SETTINGS, Recording, latest, run
 
 from hd_monitor.arrays import FloatArray, IntArray
 from hd_monitor.contract import Block
@@ -113,7 +113,7 @@ def test_blocks_of_another_publisher_are_left_out(recording: Recording, lag: int
 
 def samples_only(recording: Recording, stamps: IntArray, values: FloatArray) -> Monitor:
     """Feed single samples in small groups, as a node does."""
-    monitor = Monitor(JointSettings.from_mapping({"input.source": "accel_stamped"}))
+    monitor = Monitor(JointSettings.from_mapping(PAPER | {"input.source": "accel_stamped"}))
     recording.feed_motion(monitor)
     for first in range(0, stamps.size, 50):
         monitor.add(Quantity.VIBRATION, stamps[first : first + 50], values[first : first + 50])
@@ -205,18 +205,21 @@ def test_rejected_messages_show(recording: Recording) -> None:
     assert "2 dimensions" in monitor.silence(0).quality.last_fault
 
 
-def test_efforts_of_zero_do_not_count_as_measured(recording: Recording) -> None:
-    monitor = Monitor(SETTINGS)
+@pytest.mark.parametrize("uncertainty", [0.1, 0.5])
+def test_efforts_of_zero_do_not_count_as_measured(recording: Recording, uncertainty: float) -> None:
+    """That load.torque stands in is said; how the lines couple with each other tells whether it is right."""
+    monitor = Monitor(JointSettings.from_mapping(PAPER | {"load.assumed_uncertainty": uncertainty}))
     monitor.add(Quantity.MOTION, recording.joint_stamps, recording.position, recording.velocity, 0.0 * recording.effort)
     for block in recording.blocks():
         monitor.add_block(block)
     monitor.finish()
     found = latest(monitor).identification
     assert found is not None
-    assert not found.relative  # load.torque stands in, and the status says so
+    assert not found.relative
     assert latest(monitor).torque_source == "assumed"
     assert "taken to be 10 N·m" in latest(monitor).verdict.reason
     assert latest(monitor).verdict.component is Component.FLEXSPLINE
+    assert latest(monitor).verdict.level is Level.ERROR
 
 
 def test_positions_in_degrees_are_suspected(recording: Recording) -> None:

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from tests.hd_monitor.monitored import BLOCK, EPOCH, RATE, Recording, latest
+from tests.hd_monitor.monitored import BLOCK, EPOCH, PAPER, RATE, Recording, latest
 
 from hd_monitor.arrays import FloatArray, IntArray
 from hd_monitor.assessment import Assessment
@@ -16,7 +16,7 @@ from hd_monitor.sources import Quantity
 SECOND = 1_000_000_000
 BLOCK_TIME = SECOND * BLOCK // RATE
 # A parameter that would make the indexes three times too small, were it used.
-SETTINGS = JointSettings.from_mapping({"load.source": "wrench", "load.torque": 30.0})
+SETTINGS = JointSettings.from_mapping(PAPER | {"load.source": "wrench", "load.torque": 30.0})
 
 Torque = tuple[IntArray, FloatArray]
 
@@ -57,7 +57,8 @@ def damaged(torque: Torque, where: Callable[[FloatArray], object], value: float 
 def test_the_part_is_named_by_the_measured_torque_alone(recording: Recording, torque: Torque) -> None:
     monitor = Monitor(SETTINGS)
     feed(monitor, recording, torque)
-    said = latest(monitor)
+    said = monitor.finish()
+    assert said is not None
     assert said.verdict.component is Component.FLEXSPLINE
     assert said.torque_source == "wrench"
     assert said.identification is not None

@@ -18,7 +18,7 @@ SETTINGS = JointSettings.from_mapping({})
 MODEL = ParametricModel(flexspline=StiffnessSeries((0.03,)), circular_spline=StiffnessSeries((0.035,)))
 NOTHING = replace(Identification.none((), relative=False), samples=12_000)
 SOUND = replace(NOTHING, signal_to_noise=20.0)
-TORQUE = replace(NOTHING, limitations=(blocker(LimitationCode.TORQUE_TOO_SMALL),))
+TORQUE = replace(NOTHING, limitations=(blocker(LimitationCode.TORQUE_CONTRADICTED, factor=3.0),))
 RNG = np.random.default_rng(3)
 
 
@@ -97,7 +97,7 @@ def test_a_late_stamp_takes_the_place_of_what_follows_from_it(swing: Record) -> 
 def test_efforts_are_suspected_where_the_torque_is_in_question(swing: Record) -> None:
     suspicion = suspecting(periods(swing, effort_noise=20.0))
     assert codes(suspicion.qualified(TORQUE)) == [LimitationCode.EFFORT_NOISY]
-    other = replace(NOTHING, limitations=(blocker(LimitationCode.LINES_UNEXPLAINED, unexplained_percent=40.0),))
+    other = replace(NOTHING, limitations=(blocker(LimitationCode.VALUE_ON_BOUND, names="natural frequency"),))
     assert suspicion.qualified(other) is other
 
 

@@ -97,7 +97,7 @@ class Case:
         return Component.CIRCULAR_SPLINE if self.index.circular_spline == larger else Component.FLEXSPLINE
 
     def settings(self, **changes: object) -> JointSettings:
-        """Return parameters as a careful user would set them."""
+        """Return parameters as a careful user would set them who knows the torque, measured or not."""
         reducer, dynamics = self.model.reducer, self.model.dynamics
         return JointSettings.from_mapping(
             {
@@ -108,6 +108,8 @@ class Case:
                 "dynamics.damping_ratio": dynamics.damping_ratio,
                 "dynamics.inertia": dynamics.inertia,
                 "load.torque": self.model.torque.mean,
+                "load.assumed_uncertainty": 0.1,
+                "reducer.transmission_error": 0.0,
             }
             | changes
         )

@@ -269,8 +269,8 @@ class Recorder:
             return measured
         if source in ("auto", "parameter") and self._load.torque != 0.0:
             self.torque_source = "parameter" if source == "parameter" else "assumed"
-            return np.full(measured.size, self._load.torque)
-        self.torque_source = "unknown"
+        else:
+            self.torque_source = "unknown"
         return np.full(measured.size, math.nan)
 
     def _count_screened(self, screened: Screened) -> None:

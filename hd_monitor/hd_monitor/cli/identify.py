@@ -20,8 +20,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         type=Path,
         metavar="BAG",
         help="rosbag2 folder or file, MCAP or SQLite; all recordings of a joint count together. fn and ζ show in a "
-        "sweep or run-up through fn/k, and are sought whatever dynamics.refine says in FILE; nothing fades, whatever "
-        "analysis.memory says there",
+        "sweep or run-up through fn/k; nothing fades, whatever analysis.memory says in FILE",
     )
     add_input_arguments(parser)
     parser.add_argument(

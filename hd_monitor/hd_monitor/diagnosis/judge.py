@@ -1,22 +1,33 @@
 """From evidence to a verdict: limits with hysteresis, confidence, confirmation N of M, latch."""
 
+import math
 from collections import deque
 from dataclasses import replace
 
 from ..identification.result import Identification
-from ..reducer import Mount
+from ..reducer import LinePair, Mount
 from ..settings import DiagnosisSettings, JointSettings
 from .limitations import describe_limitation
-from .probability import Probabilities, component_probabilities, find_cause, name_component, severity
+from .probability import (
+    Probabilities,
+    beyond,
+    component_probabilities,
+    find_cause,
+    index_probabilities,
+    name_component,
+    severity,
+)
 from .verdict import Cause, Component, FaultCode, Level, Verdict
 from .wording import (
     describe_component,
     describe_doubtful_limit,
     describe_doubtful_name,
     describe_relative,
+    describe_unknown_scale,
 )
 
-_SHARP = 0.1  # an index whose standard deviation is below this part of the limit is compared with it directly
+LIKELY = 0.5
+"""Probability of a defect from which its part is named although the torque is not known well enough for limits."""
 
 
 class Judge:
@@ -77,6 +88,11 @@ class Judge:
         self._shown = shown
         return self._latch(shown)
 
+    def conclude(self, evidence: Identification) -> Verdict:
+        """Judge evidence that will not change any more: it confirms itself."""
+        self._recent.extend([_kind(self._assess(evidence))] * self._limits.confirm_count)
+        return self.judge(evidence, self._shown)
+
     def _latch(self, shown: Verdict) -> Verdict:
         if not self._limits.latch:
             return shown
@@ -94,30 +110,45 @@ class Judge:
             reason = "; ".join(map(describe_limitation, evidence.blockers))
             wait = all(blocker.is_not_yet for blocker in evidence.blockers)
             return Verdict.waiting(reason) if wait else self._undetermined(reason)
-        if evidence.relative:
+        if evidence.relative and math.isinf(evidence.scale_std):
             return self._assess_relative(evidence)
+        verdict = self._assess_absolute(evidence)
+        if evidence.relative and verdict.component in (Component.NONE, Component.UNDETERMINED):
+            return self._assess_scaleless(evidence)
+        return verdict
+
+    def _assess_absolute(self, evidence: Identification) -> Verdict:
+        """Accuse a part whose index or transmission error is beyond its limit, as surely as is required."""
         limits = self._limits
         alarmed = self._shown.component not in (Component.NONE, Component.UNDETERMINED)
         limit = limits.warn_index * (1.0 - limits.hysteresis) if alarmed else limits.warn_index
-        component = name_component(severity(evidence, limits), limit, limits.both_ratio)
-        odds = component_probabilities(evidence, limits, limit)
-        error_std = evidence.transmission_error_std or (0.0, 0.0)
-        sharp = max(evidence.index_std) < _SHARP * limits.warn_index
-        sharp = sharp and max(error_std) < _SHARP * limits.warn_transmission_error
-        sound = component is Component.NONE
-        if not sharp and (odds.none if sound else 1.0 - odds.none) < limits.confidence:
+        odds, sizes = component_probabilities(evidence, limits, limit), severity(evidence, limits)
+        accused = [probability >= limits.confidence for probability in beyond(evidence, limits, limit)]
+        if odds.none >= limits.confidence:
+            return self._named(Component.NONE, Level.OK, evidence, Cause.NONE)
+        if not any(accused) and 1.0 - odds.none < limits.confidence:
             return Verdict.waiting(describe_doubtful_limit(evidence, limits, limit))
-        if sound:
-            return self._named(component, Level.OK, evidence, Cause.NONE)
+        component = name_component(
+            LinePair(*(max(size, limit) if one else 0.0 for size, one in zip(sizes, accused, strict=True))),
+            limit,
+            limits.both_ratio,
+        )
         level = self._magnitude(evidence)
-        if self._contradicted(component, odds):
+        if component is Component.NONE or self._contradicted(component, odds):
             return self._undetermined(describe_doubtful_name(evidence, odds), level)
         return self._named(component, level, evidence, find_cause(evidence, limits, limit))
+
+    def _assess_scaleless(self, evidence: Identification) -> Verdict:
+        """Name the dominating part, if it may well be defective, where the torque is too uncertain for limits."""
+        odds = component_probabilities(evidence, self._limits, self._limits.warn_index)
+        if odds.none > 1.0 - LIKELY:
+            return Verdict.waiting(describe_unknown_scale(evidence))
+        return self._assess_relative(evidence)
 
     def _assess_relative(self, evidence: Identification) -> Verdict:
         """Without the torque only the ratio of the two indexes means something: no limit applies."""
         component = name_component(evidence.index, 0.0, self._limits.both_ratio)
-        odds = component_probabilities(evidence, self._limits, 0.0)
+        odds = index_probabilities(evidence, self._limits, 0.0)
         if self._contradicted(component, odds):
             return self._undetermined(describe_doubtful_name(evidence, odds))
         return Verdict.naming(component, Level.OK, describe_relative(component, evidence), Cause.RELATIVE)

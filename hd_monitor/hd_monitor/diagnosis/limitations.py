@@ -9,10 +9,6 @@ _BOTH_DIRECTIONS = "; ".join(
     f"{{{d}}}: {{{d}_line:.3g}} ± {{{d}_line_std:.1g}} and {{{d}_next_line:.3g}} ± {{{d}_next_line_std:.1g}}"
     for d in ("first", "second")
 )
-_WRONG_TORQUE = (
-    "The vibration contradicts the torque given, which seems to be {}: check load.torque, the effort's unit and offset "
-    "and the sensor's gain, radius and bandwidth; the indexes' scale depends on them"
-)
 _CORRECT_TEETH = (
     "the {given} given; correct reducer.flexspline_teeth and reducer.circular_spline_teeth, since with wrong ones no "
     "part can be named"
@@ -23,10 +19,6 @@ SENTENCES: Mapping[LimitationCode, str] = {
         "the vibration fits a natural frequency of {fitted_hz:.1f} Hz, not the {given_hz:g} Hz given: correct "
         "dynamics.natural_frequency"
     ),
-    LimitationCode.NATURAL_FREQUENCY_CONTRADICTED: (
-        "The natural frequency given, {given_hz:g} Hz, contradicts the vibration, which fits about {fitted_hz:.1f} Hz: "
-        "correct dynamics.natural_frequency or allow dynamics.refine"
-    ),
     LimitationCode.DAMPING_CORRECTED: ("the vibration fits a damping ratio of {fitted:.3f}, not the {given:g} given"),
     LimitationCode.MOTION_STAMPS_LAG: (
         "the stamps of the joint states lag those of the vibration by {delay_ms:.1f} ms, which is compensated"
@@ -34,8 +26,14 @@ SENTENCES: Mapping[LimitationCode, str] = {
     LimitationCode.VIBRATION_STAMPS_LAG: (
         "the stamps of the vibration lag those of the joint states by {delay_ms:.1f} ms, which is compensated"
     ),
-    LimitationCode.TORQUE_TOO_SMALL: _WRONG_TORQUE.format("larger"),
-    LimitationCode.TORQUE_TOO_LARGE: _WRONG_TORQUE.format("smaller"),
+    LimitationCode.TORQUE_CORRECTED: (
+        "the vibration fits {factor:.2g} times the torque given, or that much less inertia: check load.torque or the "
+        "effort's unit, and dynamics.inertia"
+    ),
+    LimitationCode.TORQUE_CONTRADICTED: (
+        "The vibration would fit {factor:.2g} times the torque given, or that much less inertia, more than either may "
+        "be wrong: check load.torque or the effort's unit, dynamics.inertia, and the sensor's gain and unit"
+    ),
     LimitationCode.TORQUE_ABSURD: (
         "A torque of {torque_nm:.3g} N·m would wind the reducer up by {wind_up_deg:.0f}°: check the effort's unit, "
         "dynamics.inertia and dynamics.natural_frequency"
@@ -129,6 +127,17 @@ SENTENCES: Mapping[LimitationCode, str] = {
     LimitationCode.VIBRATION_CONSTANT: (
         "The vibration signal does not change at all while the joint turns: check the sensor"
     ),
+    LimitationCode.INERTIA_MOVES: (
+        "The inertia moves along the motion: whether what is found stays the same shows after {needed_s:.0f} s of it, "
+        "of which {motion_s:.0f} s are seen"
+    ),
+    LimitationCode.SEGMENTS_DISAGREE: (
+        "The inertia moves along the motion, and what is found differs from segment to segment {factor:.0f} times as "
+        "much as noise explains: no part can be named on it; hold the other joints still, or measure the torque"
+    ),
+    LimitationCode.INERTIA_UNFOLLOWED: (
+        "the newest motion was left out: the inertia moves, and its course could not be found"
+    ),
     LimitationCode.SEGMENT_UNUSABLE: "The newest motion could not be used: {cause}",
     LimitationCode.LINES_BEYOND_BANDWIDTH: (
         "At {speed_rpm:.0f} rpm all lines lie beyond the {limit_hz:.0f} Hz that the sensor hears: sample faster, "
@@ -139,13 +148,6 @@ SENTENCES: Mapping[LimitationCode, str] = {
         "sensor hears, so that a defect may hide in them: turn more slowly at times, sample faster, or look at the "
         "first {heard:.0f} alone (analysis.harmonics)"
     ),
-    LimitationCode.TRAVEL_TOO_SHORT: (
-        "Only {travel_deg:.0f}° of output travel seen: at least {needed_deg:.0f}° are needed to separate the two "
-        "splines' lines, {missing_deg:.0f}° more"
-    ),
-    LimitationCode.MOTION_TOO_SHORT: (
-        "Only {motion_s:.0f} s of motion seen: {needed_s:.0f} s are needed to rule out other causes"
-    ),
     LimitationCode.LINES_TOO_WEAK: (
         "The lines are too weak against the noise at {speed_rpm:.0f} rpm (signal to noise {signal_to_noise_db:.0f} "
         "dB): turn faster, load the joint more, or record for longer"
@@ -154,20 +156,11 @@ SENTENCES: Mapping[LimitationCode, str] = {
         "The sensor hears nothing of this joint: neither spline's line rises above the noise, as even those of a sound "
         "reducer do; check that the sensor works and that it is mounted on this joint"
     ),
-    LimitationCode.LINES_UNEXPLAINED: (
-        "{unexplained_percent:.0f} % of the vibration at the lines is not explained by the model: check teeth, mount, "
-        "natural frequency and torque, and look for another source of vibration near the lines (mains hum, a "
-        "neighbouring machine)"
-    ),
     LimitationCode.UNCERTAINTY_WIDENED: (
         "the model explains the lines only in part, so the uncertainties are widened {factor:.1f} times"
     ),
     LimitationCode.OTHER_PART: (
         "a torque of {torque_nm:.3g} ± {std_nm:.1g} N·m at {order:g} cycles per output revolution points to the {part}"
-    ),
-    LimitationCode.NEAR_RESONANCE: (
-        "At this speed the lines are so near the natural frequency ({given_hz:g} Hz given) that a small error in it "
-        "would change the name: let the joint turn at other speeds too"
     ),
     LimitationCode.SIGNAL_MISSING: (
         "The joint states carry no {field}: set input.source to {other}, or have the driver publish it"

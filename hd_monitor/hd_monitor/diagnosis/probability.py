@@ -57,6 +57,16 @@ def component_probabilities(evidence: Identification, limits: DiagnosisSettings,
     return _shares(_distribution(evidence, limits), limit, limits.both_ratio)
 
 
+def index_probabilities(evidence: Identification, limits: DiagnosisSettings, limit: float) -> Probabilities:
+    """Probability of each component by the stiffness indexes alone."""
+    return _shares(_of_indexes(evidence), limit, limits.both_ratio)
+
+
+def beyond(evidence: Identification, limits: DiagnosisSettings, limit: float) -> LinePair:
+    """Probability that a spline's index or its transmission error is beyond the limit [index] in force."""
+    return LinePair(*((_draws(_distribution(evidence, limits)) >= limit).any(axis=0).mean(axis=1).tolist()))
+
+
 def find_cause(evidence: Identification, limits: DiagnosisSettings, limit: float) -> Cause:
     """Tell which reading of the worse spline exceeds the limit [index] in force, as surely as a part must be named."""
     if evidence.transmission_error is None:
@@ -84,15 +94,18 @@ def _scaled(error: LinePair, limits: DiagnosisSettings) -> tuple[float, float]:
 
 def _distribution(evidence: Identification, limits: DiagnosisSettings) -> _Distribution:
     error, std, correlation = evidence.transmission_error, evidence.transmission_error_std, evidence.correlation
-    index, index_std = tuple(evidence.index), tuple(evidence.index_std)
     if error is None or std is None or correlation is None:
-        r = evidence.index_correlation
-        return _Distribution(index, index_std, ((1.0, r), (r, 1.0)))
+        return _of_indexes(evidence)
     return _Distribution(
-        (*index, *_scaled(error, limits)),
-        (*index_std, *_scaled(std, limits)),
+        (*evidence.index, *_scaled(error, limits)),
+        (*evidence.index_std, *_scaled(std, limits)),
         tuple(map(tuple, correlation.tolist())),
     )
+
+
+def _of_indexes(evidence: Identification) -> _Distribution:
+    r = evidence.index_correlation
+    return _Distribution(tuple(evidence.index), tuple(evidence.index_std), ((1.0, r), (r, 1.0)))
 
 
 @functools.lru_cache(maxsize=16)  # the evidence often stays the same from one period to the next

@@ -9,7 +9,10 @@ from .probability import Probabilities
 from .verdict import Cause, Component, Level
 
 _VAGUE = 0.2
-"""Standard deviation of an index over the warn limit from which the two kinds of reading are not separated."""
+"""Standard deviation of an index over the warn limit from which it is not known well."""
+
+_ALIKE = -0.8
+"""Correlation of a spline's index and transmission error from which the motion does not separate the two."""
 
 PART_NAMES = {
     Component.FLEXSPLINE: "flexspline",
@@ -102,13 +105,29 @@ def describe_relative(component: Component, evidence: Identification) -> str:
     )
 
 
+def describe_unknown_scale(evidence: Identification) -> str:
+    """Say that no limit applies, as the torque is not known well enough, and that nothing points to a defect."""
+    return _with_doubts(
+        f"The torque is not known well enough to compare the indexes with a limit ({_indexes(evidence)}): have the "
+        "driver publish efforts, or give load.torque and load.assumed_uncertainty",
+        evidence,
+    )
+
+
 def describe_doubtful_limit(evidence: Identification, limits: DiagnosisSettings, limit: float) -> str:
     """Say that a reading may lie on either side of its limit, and what would help."""
-    index, std = max(zip(evidence.index, evidence.index_std, strict=True))
-    if evidence.transmission_error is not None and std > _VAGUE * limits.warn_index:
+    spline = max((0, 1), key=lambda s: evidence.index[s] + evidence.index_std[s])
+    index, std = evidence.index[spline], evidence.index_std[spline]
+    if evidence.correlation is not None and float(evidence.correlation[spline, spline + 2]) < _ALIKE:
         return _with_doubts(
             f"A fluctuating stiffness and a transmission error look alike in this motion ({_indexes(evidence)}; "
             f"{_errors(evidence)}): a change of torque or of speed would tell them apart",
+            evidence,
+        )
+    if std > _VAGUE * limits.warn_index:
+        return _with_doubts(
+            f"The indexes are not known well enough ({_indexes(evidence)}): more motion, more speed or more load "
+            "would show more",
             evidence,
         )
     factor = (std / max(abs(index - limit), 0.1 * limit)) ** 2

@@ -54,6 +54,8 @@ class Identification:
     relative : bool
         True if the transmitted torque (or the transfer function) is unknown: then only the ratio of the two indexes
         means something, not their sizes.
+    scale_std : float
+        Standard deviation of the logarithm of the indexes' scale; inf where nothing tells it.
     lines : tuple of LineEstimate
         The line amplitudes behind the indexes.
     travel : float
@@ -65,7 +67,7 @@ class Identification:
     misfit : float
         Residual power over the power that the noise floor explains; about 1 if the model is right.
     natural_frequency, natural_frequency_std, damping_ratio, damping_ratio_std : float
-        fn [Hz] and ζ used, and their standard deviations: 0 where they were given and not refined.
+        fn [Hz] and ζ, and their standard deviations: 0 where they were given as exact.
     load_fluctuation, load_fluctuation_std : float
         Identified amplitude of the unknown load fluctuation [N·m].
     model : ParametricModel or None
@@ -89,6 +91,7 @@ class Identification:
     transmission_error_std: LinePair | None = None
     correlation: FloatArray | None = None
     relative: bool = False
+    scale_std: float = math.inf
     lines: tuple[LineEstimate, ...] = ()
     travel: float = 0.0
     samples: int = 0

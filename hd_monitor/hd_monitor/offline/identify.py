@@ -20,8 +20,8 @@ from .identify_teeth import ToothCheck
 from .plan import JointPlan, Request, check_same_settings, plan
 from .run import run
 
-WHOLE_RECORDING: Mapping[str, Any] = {"analysis.memory": 86_400.0, "dynamics.refine": True}
-"""What a parameter file says for watching does not suit identification: nothing fades, and fn and ζ are sought."""
+WHOLE_RECORDING: Mapping[str, Any] = {"analysis.memory": 86_400.0}
+"""What a parameter file says for watching does not suit identification: nothing fades."""
 
 
 @dataclass(slots=True, kw_only=True)

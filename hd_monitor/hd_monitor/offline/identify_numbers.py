@@ -11,9 +11,13 @@ from ..arrays import ComplexArray, FloatArray
 from ..identification.fit.indexes import stiffness_indexes
 from ..identification.fit.unknowns import Unknowns
 from ..identification.result import Identification
+from ..settings import Uncertainty
 
 CONFIDENCE = 0.95
 """Probability with which an interval holds the true value."""
+
+LEARNT = 0.5
+"""Standard deviation, as a part of the one given, below which the motion determines a value."""
 
 _WIDTH = float(norm.ppf(0.5 + 0.5 * CONFIDENCE))
 _CLEAR = 20.0
@@ -99,13 +103,14 @@ def _harmonic(k: int, phasor: complex, covariance: FloatArray | None) -> Harmoni
     phase = math.atan2(phasor.imag, phasor.real)
     if covariance is None:
         return Harmonic(k, Estimate.gaussian(abs(phasor), math.nan), phase, math.nan)
-    values, whole = _ONE.zero(), np.zeros((_ONE.size, _ONE.size))
-    values[_ONE.circular_spline] = phasor.real, phasor.imag
-    whole[_ONE.circular_spline, _ONE.circular_spline] = covariance
-    magnitude = stiffness_indexes(_ONE, values, whole)
     size = abs(phasor)
     along, across = np.array([phasor.real, phasor.imag]), np.array([-phasor.imag, phasor.real])
     radial = math.sqrt(float(along @ covariance @ along)) / size if size > 0.0 else 0.0
+    values, whole = _ONE.zero(), np.zeros((_ONE.size, _ONE.size))
+    values[_ONE.circular_spline] = phasor.real, phasor.imag
+    # What lies across the phasor beyond that is the clocks' lag, which turns it
+    whole[_ONE.circular_spline, _ONE.circular_spline] = radial**2 * np.eye(2)
+    magnitude = stiffness_indexes(_ONE, values, whole)
     beta = Estimate(magnitude.index.circular_spline, magnitude.std.circular_spline, *magnitude_interval(size, radial))
     std = math.sqrt(float(across @ covariance @ across)) / size**2 if size > 0.0 else math.inf
     if not std < 0.5:  # beyond, the error of a phase is no longer Gaussian, and soon it says nothing
@@ -113,7 +118,11 @@ def _harmonic(k: int, phasor: complex, covariance: FloatArray | None) -> Harmoni
     return Harmonic(k, beta, phase, std)
 
 
-def dynamics(found: Identification) -> dict[str, Estimate]:
-    """Natural frequency [Hz] and damping ratio by their parameters' names; a deviation is 0 for one taken as given."""
-    names = ("natural_frequency", "damping_ratio")
-    return {name: Estimate.lognormal(getattr(found, name), getattr(found, f"{name}_std")) for name in names}
+def dynamics(found: Identification, given: Uncertainty) -> dict[str, tuple[Estimate, bool]]:
+    """Natural frequency [Hz] and damping ratio by their parameters' names, and whether the motion determines them."""
+    before = {"natural_frequency": given.natural_frequency, "damping_ratio": given.damping}
+    estimates = {name: Estimate.lognormal(getattr(found, name), getattr(found, f"{name}_std")) for name in before}
+    return {
+        name: (value, not found.blockers and 0.0 < value.std < LEARNT * before[name] * value.value)
+        for name, value in estimates.items()
+    }

@@ -75,9 +75,9 @@ def joint_entry(joint: JointIdentification) -> dict[str, Any]:
         "notes": list(joint.plan.notes),
     }
     if not settings.sensorless:
-        for name, estimate in numbers.dynamics(found).items():
+        for name, (estimate, identified) in numbers.dynamics(found, settings.uncertainty).items():
             given = getattr(settings.dynamics, name)
-            entry[name] = estimate._asdict() | {"given": given, "identified": estimate.std > 0.0}
+            entry[name] = estimate._asdict() | {"given": given, "identified": identified}
         entry["load_fluctuation"] = Estimate.gaussian(found.load_fluctuation, found.load_fluctuation_std)._asdict()
     return dict(plain(entry))
 
@@ -121,8 +121,8 @@ def refined(joint: JointIdentification) -> dict[str, Any]:
         values["reducer"] = _teeth_entry(joint.teeth.ranked[0].teeth)
     if settings.sensorless or found.blockers or teeth_contradict(joint):
         return values
-    estimates = numbers.dynamics(found)
-    known = {name: float(f"{estimate.value:.6g}") for name, estimate in estimates.items() if estimate.std > 0.0}
+    estimates = numbers.dynamics(found, settings.uncertainty).items()
+    known = {name: float(f"{estimate.value:.6g}") for name, (estimate, identified) in estimates if identified}
     return values | ({"dynamics": known} if known else {})
 
 

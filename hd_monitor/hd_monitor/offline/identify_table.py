@@ -60,12 +60,12 @@ def _splines(joint: JointIdentification, found: Identification) -> Iterator[str]
 
 def _dynamics(joint: JointIdentification, found: Identification) -> Iterator[str]:
     given = joint.settings.dynamics
-    fn, zeta = numbers.dynamics(found).values()
-    for name, unit, estimate, start in (
+    fn, zeta = numbers.dynamics(found, joint.settings.uncertainty).values()
+    for name, unit, (estimate, identified), start in (
         ("natural frequency fn", " Hz", fn, given.natural_frequency),
         ("damping ratio ζ", "", zeta, given.damping_ratio),
     ):
-        if estimate.std > 0.0:
+        if identified:
             yield f"  {name:<22} {_value(estimate, 1.0)}{unit}; given was {start:g}{unit}"
         else:
             yield f"  {name:<22} {start:g}{unit} as given: the motion does not tell it better"

@@ -1,7 +1,6 @@
 """What to replay: which joints with which settings, listening to which of a recording's topics."""
 
 import itertools
-import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -9,7 +8,6 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from .. import cdr
-from ..contract import NANOSECONDS
 from ..errors import ParameterError
 from ..settings import JointSettings, split_joints
 from ..sources import INPUT_SOURCES, JOINT_STATES, Quantity
@@ -97,21 +95,8 @@ def plan(bag: Bag, request: Request) -> list[JointPlan]:
             continue
         topics = finder.joint_topics(own.sources, joint if len(settings) > 1 else None)
         messages = {quantity: recorded[topic] for quantity, topic in topics.items()}
-        plans.append(JointPlan(joint, own, topics, messages, (*notes, *_too_short(bag, own))))
+        plans.append(JointPlan(joint, own, topics, messages, tuple(notes)))
     return plans
-
-
-def _too_short(bag: Bag, settings: JointSettings) -> list[str]:
-    """Say that the recording ends before a verdict can be confirmed."""
-    period, count = settings.analysis.period, settings.diagnosis.confirm_count
-    first, last = bag.span or (0, math.inf)
-    seconds = (last - first) / NANOSECONDS
-    if seconds >= count * period:
-        return []
-    return [
-        f"{seconds:.3g} s were recorded, too short for the {count} verdicts that must agree, one every "
-        f"{period:g} s: set a shorter analysis.period, or record longer"
-    ]
 
 
 def array_labels(bag: Bag, topic: str) -> tuple[str, ...]:

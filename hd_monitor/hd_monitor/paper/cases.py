@@ -18,6 +18,8 @@ from ..settings import PARAMETERS, JointSettings
 from .reading import Reader, read_file
 
 PAPER_FILE = "paper.yaml"
+ASSUMED: Mapping[str, Any] = {"reducer.transmission_error": 0.0, "load.assumed_uncertainty": 0.1}
+"""What the paper takes for granted, and a case unless it says otherwise: no transmission error, a torque known well."""
 GRAVITY = 9.80665  # m/s² per g
 
 
@@ -168,7 +170,8 @@ def _case(source: str, values: Mapping[str, Any], *, shared: bool = False) -> Ca
         for name in ("flexspline", "circular_spline")
     }
     known = {parameter.name for parameter in PARAMETERS}
-    settings = JointSettings.from_mapping({n: reader.left.pop(n) for n in list(reader.left) if n in known})
+    given = {name: reader.left.pop(name) for name in list(reader.left) if name in known}
+    settings = JointSettings.from_mapping({**ASSUMED, **given})
     reducer, dynamics = settings.reducer, settings.dynamics
     torque = Torque(
         mean=reader.number("torque.mean", settings.load.torque),

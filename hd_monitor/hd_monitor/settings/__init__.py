@@ -5,6 +5,7 @@ from .groups import (
     PARAMETERS,
     ROS_PARAMETERS,
     DiagnosisSettings,
+    Uncertainty,
 )
 from .joint_settings import JointSettings
 from .joints import set_aside_foreign, split_joints
@@ -15,6 +16,7 @@ __all__ = [
     "ROS_PARAMETERS",
     "DiagnosisSettings",
     "JointSettings",
+    "Uncertainty",
     "set_aside_foreign",
     "split_joints",
 ]

@@ -62,6 +62,20 @@ class InputSettings:
         "frequency at which the accelerometer, with its anti-aliasing filter, attenuates by 3 dB; beyond it nothing "
         "counts; 0: unknown, 0.4 of the sampling rate",
     )
+    delay_uncertainty: float = number(
+        0.02,
+        "s",
+        0.0,
+        0.2,
+        "how well the stamps of vibration and joint states agree: the standard deviation of the lag between them",
+    )
+    clock_drift: float = number(
+        100.0,
+        "ppm",
+        0.0,
+        1000.0,
+        "standard deviation of the rate at which that lag may change, where the two are stamped by different clocks",
+    )
     clipping_limit: float = number(
         0.0,
         "rad/s²",
@@ -94,6 +108,17 @@ class LoadSettings:
         1e6,
         "mean torque on the output where no effort is measured; 0: unknown, indexes are then relative",
     )
+    torque_uncertainty: float = number(
+        0.1, "", 0.0, 2.0, "how sure you are of a measured torque's scale: its standard deviation as a part of it"
+    )
+    assumed_uncertainty: float = number(
+        0.5,
+        "",
+        0.0,
+        2.0,
+        "the same of load.torque, where no torque is measured; from about 0.3 on indexes are relative until the motion "
+        "itself tells their scale",
+    )
     topic: str = plain(
         "",
         "topic of the torque's sensor with load.source: wrench; empty: wrench, below the joint's name with several "
@@ -110,6 +135,29 @@ class LoadSettings:
                 f"load.topic = {self.topic!r} is not a topic's name; it has words of letters, digits and underscores "
                 "with single slashes between, as in ft_sensor/wrench"
             )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Uncertainty:
+    """How sure the parameters are: standard deviations of what is given.
+
+    Attributes
+    ----------
+    natural_frequency, damping, inertia, measured_torque, assumed_torque : float
+        As parts of the value; the torque's are those of its scale.
+    delay : float
+        Of the lag between the stamps of vibration and joint states [s].
+    clock_drift : float
+        Of the rate at which that lag changes.
+    """
+
+    natural_frequency: float
+    damping: float
+    inertia: float
+    measured_torque: float
+    assumed_torque: float
+    delay: float
+    clock_drift: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -177,7 +225,8 @@ class DiagnosisSettings:
         "",
         0.5,
         0.999999,
-        "probability that a named part must have on the evidence; below it the verdict is undetermined",
+        "probability with which a part's index or transmission error must be beyond its limit for the part to be "
+        "accused, or both splines below it to be called sound; between the two there is no verdict yet",
     )
     hysteresis: float = number(
         0.1, "", 0.0, 0.9, "part of a limit by which an index must fall below it before the status improves"
@@ -218,7 +267,7 @@ PARAMETERS = (
         mount=choice("circular_spline_fixed", Mount, "the stationary spline"),
         serial=plain("", "serial number of the reducer, shown as hardware_id"),
         transmission_error=number(
-            0.0,
+            1.0,
             "arcmin",
             0.0,
             60.0,
@@ -232,8 +281,23 @@ PARAMETERS = (
         natural_frequency=number(55.0, "Hz", 0.5, 2000.0, "torsional natural frequency of the joint with its load"),
         damping_ratio=number(0.023, "", 1e-4, 0.7, "fraction of critical damping"),
         inertia=number(0.29, "kg·m²", 1e-6, 1e6, "inertia that the reducer drives, seen at its output"),
-        refine=plain(
-            True, "refine natural frequency and damping on line where the speed varies enough to determine them"
+        natural_frequency_uncertainty=number(
+            0.1,
+            "",
+            0.0,
+            0.2,
+            "how sure you are of the natural frequency: its standard deviation as a part of it; 0: known exactly, "
+            "never refined",
+        ),
+        damping_uncertainty=number(
+            0.5,
+            "",
+            0.0,
+            1.0,
+            "the same of the damping ratio; 0.5: it may well be 1.6 times larger or smaller",
+        ),
+        inertia_uncertainty=number(
+            0.2, "", 0.0, 1.0, "the same of the inertia, and so of the scale of every stiffness index"
         ),
     ),
     *parameters_of(InputSettings, "input."),

@@ -9,7 +9,15 @@ from ..model.parameters import Dynamics
 from ..parameter import Value, check_all, fill_group
 from ..reducer import Reducer
 from ..sources import INPUT_SOURCES, JOINT_STATES, LOAD_SOURCES, Quantity, Source
-from .groups import PARAMETERS, AnalysisSettings, DiagnosisSettings, HistorySettings, InputSettings, LoadSettings
+from .groups import (
+    PARAMETERS,
+    AnalysisSettings,
+    DiagnosisSettings,
+    HistorySettings,
+    InputSettings,
+    LoadSettings,
+    Uncertainty,
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -28,7 +36,7 @@ class JointSettings:
     serial: str
     transmission_error: float
     dynamics: Dynamics
-    refine_dynamics: bool
+    uncertainty: Uncertainty
     input: InputSettings
     load: LoadSettings
     analysis: AnalysisSettings
@@ -56,7 +64,7 @@ class JointSettings:
             serial=str(values["reducer.serial"]),
             transmission_error=float(values["reducer.transmission_error"]),  # type: ignore[arg-type]
             dynamics=fill_group(values, "dynamics", Dynamics),
-            refine_dynamics=bool(values["dynamics.refine"]),
+            uncertainty=_uncertainty(values),
             input=fill_group(values, "input", InputSettings),
             load=fill_group(values, "load", LoadSettings),
             analysis=fill_group(values, "analysis", AnalysisSettings),
@@ -82,3 +90,18 @@ class JointSettings:
         if torque is not None and not self.sensorless:
             needed.append(replace(torque, topic=self.load.topic or torque.topic))
         return {source.quantity: source for source in needed}
+
+
+def _uncertainty(values: Mapping[str, Value]) -> Uncertainty:
+    def number(name: str) -> float:
+        return float(values[name])  # type: ignore[arg-type]
+
+    return Uncertainty(
+        natural_frequency=number("dynamics.natural_frequency_uncertainty"),
+        damping=number("dynamics.damping_uncertainty"),
+        inertia=number("dynamics.inertia_uncertainty"),
+        measured_torque=number("load.torque_uncertainty"),
+        assumed_torque=number("load.assumed_uncertainty"),
+        delay=number("input.delay_uncertainty"),
+        clock_drift=1e-6 * number("input.clock_drift"),
+    )

@@ -73,7 +73,7 @@ def test_a_wrong_natural_frequency_is_corrected_with_all_betas(sweep: Path, tmp_
     assert frequency["given"] == pytest.approx(55.0 * error)
     assert holds(frequency, 55.0)
     assert holds(damping, 0.023)
-    assert frequency["std"] < 0.05  # a thousandth: the interval says something
+    assert frequency["std"] < 0.2  # [Hz]: fn is taken to wander by 1 % a minute, 0.3 Hz in these 16 s
     for name, betas in (("flexspline", FLEXSPLINE), ("circular_spline", CIRCULAR_SPLINE)):
         assert holds(joint[name]["index"], math.hypot(*betas))
         for harmonic, truth in zip(joint[name]["harmonics"], betas, strict=True):
@@ -131,8 +131,20 @@ def test_two_recordings_say_more_than_one(sweep: Path, tmp_path: Path) -> None:
     assert holds(both["flexspline"]["index"], math.hypot(*FLEXSPLINE))
 
 
-def test_at_one_speed_nothing_is_claimed_of_the_dynamics(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_one_speed_tells_the_dynamics_by_how_the_lines_couple(tmp_path: Path) -> None:
     events = rec.simulated(programme="fixed", fixed__speed=1200.0, duration=8.0, defect="flexspline")
+    (joint,) = identified(tmp_path, str(rec.write(tmp_path / "fixed", events)))["joints"]
+    assert joint["natural_frequency"]["identified"]
+    assert holds(joint["natural_frequency"], 55.0)
+    assert holds(joint["damping_ratio"], 0.023)
+    for harmonic, truth in zip(joint["flexspline"]["harmonics"], FLEXSPLINE, strict=True):
+        assert holds(harmonic["beta"], truth), harmonic
+
+
+def test_where_no_lines_are_heard_nothing_is_claimed_of_the_dynamics(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    events = rec.simulated(programme="fixed", fixed__speed=400.0, duration=4.0, defect="none", sensor__noise=50.0)
     bag, file = rec.write(tmp_path / "fixed", events), tmp_path / "found.yaml"
     (joint,) = identified(tmp_path, str(bag), "--yaml", str(file))["joints"]
     assert not joint["natural_frequency"]["identified"]
@@ -140,7 +152,7 @@ def test_at_one_speed_nothing_is_claimed_of_the_dynamics(tmp_path: Path, capsys:
     assert not joint["teeth"]["conclusive"]
     captured = capsys.readouterr()
     assert "as given: the motion does not tell it better" in captured.out
-    assert "vary the speed" in captured.err
+    assert "hears nothing" in captured.err
     assert not file.exists()
 
 

@@ -18,5 +18,5 @@ def test_every_code_has_a_sentence_that_its_values_fill(code: LimitationCode) ->
 
 
 def test_a_missing_value_is_an_error_not_a_gap_in_the_sentence() -> None:
-    with pytest.raises(KeyError, match="travel_deg"):
-        describe_limitation(blocker(LimitationCode.TRAVEL_TOO_SHORT, needed_deg=85.0, missing_deg=1.0))
+    with pytest.raises(KeyError, match="wind_up_deg"):
+        describe_limitation(blocker(LimitationCode.TORQUE_ABSURD, torque_nm=7.0))

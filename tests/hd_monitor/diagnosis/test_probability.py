@@ -8,7 +8,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.stats import norm
 
-from hd_monitor.diagnosis.probability import component_probabilities, find_cause, name_component, severity
+from hd_monitor.diagnosis.probability import (
+    beyond,
+    component_probabilities,
+    find_cause,
+    index_probabilities,
+    name_component,
+    severity,
+)
 from hd_monitor.diagnosis.verdict import Cause, Component
 from hd_monitor.identification.result import Identification
 from hd_monitor.reducer import LinePair
@@ -67,6 +74,25 @@ def test_order_of_two_large_indexes_as_the_normal_distribution_says(r: float, di
 def test_share_above_a_limit_as_the_normal_distribution_says() -> None:
     odds = component_probabilities(evidence(0.06, 0.0, 0.01), LIMITS, 0.05)
     assert 1.0 - odds.none == pytest.approx(norm.cdf(1.0), abs=2e-3)
+
+
+def test_each_spline_is_beyond_its_limit_as_the_normal_distribution_says() -> None:
+    found = beyond(evidence(0.04, 0.07, 0.02, correlation=0.5), LIMITS, 0.05)
+    assert found == pytest.approx((norm.cdf(-0.5), norm.cdf(1.0)), abs=2e-3)
+
+
+@pytest.mark.parametrize("correlation", [-1.0, 0.0])
+def test_a_spline_is_beyond_its_limit_by_index_or_transmission_error(correlation: float) -> None:
+    odds = beyond(with_errors(0.05, 1.5, 0.5, correlation), LIMITS, 0.05)
+    # Opposite errors: one of the two is always beyond
+    assert odds.flexspline == pytest.approx(1.0 if correlation else 0.75, abs=0.02)
+    assert odds.circular_spline == 0.0
+
+
+def test_the_indexes_alone_leave_transmission_errors_out() -> None:
+    found = with_errors(0.01, 15.0, 0.1, 0.0)
+    assert component_probabilities(found, LIMITS, 0.05).flexspline == 1.0
+    assert index_probabilities(found, LIMITS, 0.05).none == 1.0
 
 
 def with_errors(stiffness: float, error: float, std: float, correlation: float) -> Identification:

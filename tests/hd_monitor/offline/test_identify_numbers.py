@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from hd_monitor.identification.result import Identification
 from hd_monitor.offline.identify_numbers import Estimate, dynamics, harmonics
 from hd_monitor.reducer import LinePair
+from hd_monitor.settings import JointSettings
 
 
 def found(circular_spline: complex, flexspline: complex, std: float) -> Identification:
@@ -57,5 +58,9 @@ def test_the_interval_of_a_frequency_is_even_in_its_logarithm(value: float, shar
 
 def test_what_was_taken_as_given_has_no_width() -> None:
     given_ones = replace(found(0.1, 0.1, 0.01), natural_frequency=55.0, damping_ratio=0.023)
-    for estimate, value in zip(dynamics(given_ones).values(), (55.0, 0.023), strict=True):
+    exact = JointSettings.from_mapping(
+        {"dynamics.natural_frequency_uncertainty": 0.0, "dynamics.damping_uncertainty": 0.0}
+    ).uncertainty
+    for (estimate, learnt), value in zip(dynamics(given_ones, exact).values(), (55.0, 0.023), strict=True):
         assert (estimate.std, estimate.low, estimate.high) == (0.0, value, value)
+        assert not learnt

@@ -83,7 +83,8 @@ def test_good_data_is_assessed_and_the_transition_handed_out_once() -> None:
     watch.check(START + 2 * SECOND)
     assert [s.value("fault_code") for s in watch.take_transitions()] == ["HD_INPUT_LOST"]
     assert watch.feed(inputs_of(accelerations(100, 2.5), joint_states(100, 2.5)), START + 3 * SECOND)
-    assert [s.value("fault_code") for s in watch.take_transitions()] == ["HD_WAITING"]
+    # The vibration is nothing but noise
+    assert [s.value("fault_code") for s in watch.take_transitions()] == ["HD_WAITING", "HD_UNDETERMINED"]
     assert watch.take_transitions() == []
     assert float(watch.status().value("samples")) >= 500
 

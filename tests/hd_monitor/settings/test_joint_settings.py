@@ -63,7 +63,9 @@ def test_every_parameter_is_a_typed_field_of_its_group():
     elsewhere = {
         "reducer.serial": joint.serial,
         "reducer.transmission_error": joint.transmission_error,
-        "dynamics.refine": joint.refine_dynamics,
+        "dynamics.natural_frequency_uncertainty": joint.uncertainty.natural_frequency,
+        "dynamics.damping_uncertainty": joint.uncertainty.damping,
+        "dynamics.inertia_uncertainty": joint.uncertainty.inertia,
     }
     for parameter in PARAMETERS:
         group, _, field = parameter.name.partition(".")

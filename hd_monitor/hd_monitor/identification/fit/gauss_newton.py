@@ -23,9 +23,13 @@ CONVERGED = 0.05
 NEGLIGIBLE = 0.1
 """Standard deviations that a step may miss its end by for being taken along a straight line."""
 
+EXCLUDED = 14.0
+"""Minus twice the logarithm of the likelihood ratio from which another solution is excluded: 1 in 1000."""
+
+DISTINCT = 3.0
+"""Standard deviations from which two solutions are two."""
+
 _HALVINGS = 5
-_TRIAL_ROUNDS = 3  # after which the best of several starts go on
-_FINALISTS = 2
 
 
 class FitStatus(StrEnum):
@@ -98,8 +102,6 @@ class Problem:
     floor : NoiseFloor
     active : ndarray of bool, shape (unknowns,)
         Unknowns that may move.
-    patience : int
-        Factor on the rounds of a fit from one start.
     """
 
     segments: Sequence[Segment]
@@ -107,7 +109,6 @@ class Problem:
     prior: Information
     floor: NoiseFloor
     active: BoolArray
-    patience: int = 1
 
     def at(self, values: FloatArray) -> Fit:
         """Evaluate a point."""
@@ -135,7 +136,7 @@ class Problem:
 
     def solve(self, start: FloatArray, *, rounds: int) -> Fit:
         """Take Gauss-Newton steps from `start`, at most `rounds`."""
-        fit = self._descend(self.at(start), self.patience * rounds)
+        fit = self._descend(self.at(start), rounds)
         on_bound = self.active & (np.abs(fit.values) >= self.predictor.unknowns.bounds())
         return replace(fit, status=FitStatus.ON_BOUND) if on_bound.any() else fit
 
@@ -146,12 +147,13 @@ class Problem:
                 break
             if self._curvature(fit) < NEGLIGIBLE:
                 return self._moved(fit)
-            step = fit.step * self._room(fit.values, fit.step)
+            part = self._room(fit.values, fit.step)
             for _ in range(_HALVINGS):
-                trial = self.at(np.clip(fit.values + step, -bounds, bounds))
+                there = replace(self, segments=[item.segment_after(fit.step, part) for item in fit.segments])
+                trial = there.at(np.clip(fit.values + part * fit.step, -bounds, bounds))
                 if math.isfinite(trial.cost) and trial.cost < fit.cost:
                     break
-                step = 0.4 * step
+                part *= 0.4
             else:
                 return replace(fit, status=FitStatus.NO_DESCENT)
             fit = trial
@@ -183,25 +185,48 @@ class Problem:
             status=FitStatus.CONVERGED,
         )
 
-    def multistart(self, starts: Sequence[FloatArray], *, rounds: int) -> tuple["Problem", Fit]:
-        """Solve from several starts and return the best solution, with the floor of white noise that belongs to it.
+    def multistart(self, starts: Sequence[FloatArray], *, rounds: int) -> list[tuple["Problem", Fit]]:
+        """Solve from the most promising of several starts; return the solutions, the best first, with their floors.
 
-        The first step from each start leaves the load where the start has it: only then do the stiffness unknowns
-        mean anything to the load. While the residual is still large the floor is assumed white, otherwise the lines
-        not explained yet would pass for noise.
+        What a start promises is its cost after one step, by the quadratic model at the start, with the load as the
+        start has it: only then do the stiffness unknowns mean anything to the load. A varying stiffness and a
+        transmission error resemble each other, and the way from one to the other is long and bent: so the step is
+        also taken with either alone. While the residual is still large the floor is assumed white, otherwise
+        the lines not explained yet would pass for noise.
         """
-        unknowns = self.predictor.unknowns
-        held = self.active & ~unknowns.mask(unknowns.load)
-        brief = replace(self, patience=1)
-        first = [replace(brief, active=held).solve(start, rounds=1) for start in starts]
-        tried = sorted((brief._scaled(fit)._priced(fit.values, _TRIAL_ROUNDS) for fit in first), key=lambda t: t[0])
-        final = [problem._scaled(fit)._priced(fit.values, rounds) for _, problem, fit in tried[:_FINALISTS]]
-        _, problem, fit = min(final, key=lambda t: t[0])
-        return problem, fit
+        u = self.predictor.unknowns
+        kinds = [u.mask(u.load)]
+        if u.transmission_error:
+            kinds += [u.mask(u.load, u.displacement), u.mask(u.load, u.stiffness)]
+        fits = [self.at(start) for start in starts]
+        final = []
+        for held in kinds:
+            _, floor, values = min((self._promise(fit, self.active & ~held) for fit in fits), key=lambda p: p[0])
+            final.append(replace(self, floor=floor)._priced(values, rounds))
+        return [(problem, fit) for _, problem, fit in sorted(final, key=lambda t: t[0])]
 
-    def _scaled(self, fit: Fit) -> "Problem":
-        """Return the problem with a floor of white noise as strong as what a fit leaves."""
-        return replace(self, floor=NoiseFloor.white(self.floor.mean * fit.equations.cost / fit.equations.freedom))
+    def contend(self, starts: Sequence[FloatArray], *, rounds: int) -> tuple[Fit, FloatArray | None]:
+        """Solve from several starts; return the best solution, and the values of another one that is not excluded."""
+        first, *others = sorted((self.solve(start, rounds=rounds) for start in starts), key=lambda fit: fit.cost)
+        information = first.equations.information + self.prior.matrix
+        for other in others:
+            apart = other.values - first.values
+            if other.cost - first.cost < EXCLUDED and float(apart @ information @ apart) > DISTINCT**2:
+                return first, other.values
+        return first, None
+
+    def _promise(self, fit: Fit, active: BoolArray) -> tuple[float, NoiseFloor, FloatArray]:
+        """Price of a point after one step of some unknowns, the floor that it leaves, and where the step leads."""
+        place, step = np.ix_(active, active), np.zeros(active.size)
+        information = fit.equations.information + self.prior.matrix
+        score = fit.equations.score + self.prior.score(fit.values)
+        step[active] = np.linalg.lstsq(information[place], score[active], rcond=1e-13)[0]
+        bounds = self.predictor.unknowns.bounds()
+        values = np.clip(fit.values + step * self._room(fit.values, step), -bounds, bounds)
+        cost = max(fit.equations.moved(values - fit.values).cost, 1e-12 * fit.equations.cost)
+        freedom = fit.equations.freedom
+        price = freedom * math.log(self.floor.mean * cost) + self.prior.cost(values)
+        return price, NoiseFloor.white(self.floor.mean * cost / freedom), values
 
     def _priced(self, start: FloatArray, rounds: int) -> tuple[float, "Problem", Fit]:
         """Solve, and give minus twice the logarithm of the likelihood, the noise's variance being at its own best."""

@@ -27,8 +27,8 @@ class Information:
 
     @classmethod
     def gaussian(cls, std: FloatArray) -> Self:
-        """Return the information that the unknowns are 0 but for these standard deviations."""
-        weight = np.diag(1.0 / np.square(std))
+        """Return the information that the unknowns are 0 but for these standard deviations; none where one is 0."""
+        weight = np.diag(np.divide(1.0, np.square(std), out=np.zeros(std.size), where=std > 0.0))
         return cls(matrix=weight, vector=np.zeros(std.size), spread=weight)
 
     @classmethod
@@ -55,6 +55,22 @@ class Information:
     def faded(self, keep: float) -> "Information":
         """Return the information with its weight multiplied by `keep`."""
         return Information(matrix=keep * self.matrix, vector=keep * self.vector, spread=keep * keep * self.spread)
+
+    def divided(self, factor: float) -> "Information":
+        """Return the information if the noise's variance is larger by a factor."""
+        return Information(matrix=self.matrix / factor, vector=self.vector / factor, spread=self.spread / factor)
+
+    def diffused(self, place: int, variance: float) -> "Information":
+        """Return the information after one unknown has made a random step of this variance."""
+        row = self.matrix[place]
+        gain = row / (1.0 / variance + row[place])
+        keep = np.eye(row.size)
+        keep[:, place] -= gain  # the information form of adding the variance to the covariance
+        return Information(
+            matrix=keep @ self.matrix,
+            vector=keep @ self.vector,
+            spread=keep @ self.spread @ keep.T + np.outer(gain, gain) / variance,
+        )
 
     def cost(self, values: FloatArray) -> float:
         """Return the price of `values`, but for a constant."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...arrays import FloatArray
-from ...model.oscillator import GAUSS_OFFSETS, Oscillator
+from ...model.oscillator import GAUSS_OFFSETS, Oscillator, gauss_times
 from ...model.parameters import Dynamics
 from ...reducer import ARCMIN
 from ..segment.path import Path
@@ -27,8 +27,8 @@ class Linearisation:
         Measured minus predicted θ''; 0 where samples are left out.
     predicted : ndarray, shape (samples,)
         Prediction, with the free vibration that fits the measurement best.
-    jacobian : ndarray, shape (samples, unknowns)
-        Derivatives of the prediction.
+    jacobian : ndarray, shape (samples, unknowns + knots)
+        Derivatives of the prediction by the unknowns, and by the inertia at its knots where it wanders.
     free : ndarray, shape (samples, 2)
         The two free vibrations: whatever the state at the segment's start was, it is a combination of them.
     """
@@ -74,15 +74,22 @@ class Predictor:
         dynamics = self.unknowns.dynamics(self.given, values)
         omega, step = dynamics.angular_frequency, segment.period / segment.substeps
         limit = segment.low_pass.limit if segment.fastest > segment.low_pass.limit else math.inf
+        steps = segment.at_gauss.torque.shape[1]
         gauss = _Along(self, segment.at_gauss, values, dynamics, limit)
         nodes = _Along(self, segment.at_steps, values, dynamics, limit)
-        oscillator = Oscillator(dynamics, gauss.stiffness - 1.0, step)
-        damping = 2.0 * dynamics.damping_ratio * omega
-        spring = (omega**2 * nodes.stiffness)[:, None]
+        damping: float | FloatArray = 2.0 * dynamics.damping_ratio * omega
+        if segment.wander is None:
+            oscillator = Oscillator(dynamics, gauss.stiffness - 1.0, step)
+        else:
+            gauss.wander(segment.wander.hats(gauss_times(np.arange(steps + 1) / steps)), segment.wander.values)
+            nodes.wander(segment.wander.hats(np.arange(steps + 1) / steps), segment.wander.values)
+            oscillator = Oscillator(dynamics, gauss.ease * gauss.stiffness - 1.0, step, damping * gauss.ease)
+            damping = damping * nodes.ease[:, None]
+        spring = (omega**2 * nodes.ease * nodes.stiffness)[:, None]
 
         # From the quasi-static wind-up, and the two free vibrations
         inputs, force = np.zeros((2, oscillator.steps, 3)), np.zeros((oscillator.steps + 1, 3))
-        inputs[..., 0], force[:, 0] = gauss.excitation, nodes.excitation
+        inputs[..., 0], force[:, 0] = gauss.ease * gauss.excitation, nodes.ease * nodes.excitation
         wound = force[0, 0] / spring[0, 0]
         base = oscillator.respond(inputs, initial=[[wound, 1.0, 0.0], [0.0, 0.0, omega]])
         motion = force - damping * base.velocity - spring * base.displacement
@@ -110,8 +117,12 @@ class _Along:
     def __init__(self, predictor: Predictor, path: Path, values: FloatArray, dynamics: Dynamics, limit: float) -> None:
         self._unknowns = unknowns = predictor.unknowns
         self._path, self._dynamics = path, dynamics
+        self.ease = np.ones(())
+        self._hats: FloatArray | None = None
         self._beta = values[unknowns.stiffness]
-        self._lines = lines = path.lines_after(float(values[unknowns.delay]))
+        delay, drift = float(values[unknowns.delay]), float(values[unknowns.drift])
+        self._lines = lines = path.lines_after(delay, drift)
+        self._speed_then = path.speed + (delay + drift * path.time) * path.acceleration
         self._unheard = np.abs(path.speed)[..., None] * path.rates > math.tau * limit if limit < math.inf else None
         self._load_unit = predictor.reference_torque / predictor.given.inertia
         self._torque = math.exp(values[unknowns.torque]) / predictor.given.inertia * path.torque
@@ -130,14 +141,19 @@ class _Along:
             self._error_rate = path.speed * self._error_slope
             self.excitation -= omega**2 * self.stiffness * self._error + damping * self._error_rate
 
+    def wander(self, hats: FloatArray, values: FloatArray) -> None:
+        """Let ln(inertia) be `values` at the knots, whose weights along the path are `hats`."""
+        self._hats, self.ease = hats, np.exp(-hats @ values)
+
     def forcing(self, theta: FloatArray, theta_dot: FloatArray) -> FloatArray:
-        """Inputs [rad/s² per unit of each unknown] where θ and θ' are as given, shape (..., unknowns)."""
+        """Inputs [rad/s² per unit of each unknown] where θ and θ' are as given, shape (..., unknowns + knots)."""
         unknowns, path = self._unknowns, self._path
         omega = self._dynamics.angular_frequency
         damping = 2.0 * self._dynamics.damping_ratio * omega
         twist, rate = (theta + self._error, theta_dot + self._error_rate) if self._errors else (theta, theta_dot)
         spring = -(omega**2) * twist
-        forcing = np.empty((*theta.shape, unknowns.size))
+        knots = 0 if self._hats is None else self._hats.shape[-1]
+        forcing = np.empty((*theta.shape, unknowns.size + knots))
         np.multiply(self._lines, spring[..., None], out=forcing[..., unknowns.stiffness])
         np.multiply(path.loads, self._load_unit, out=forcing[..., unknowns.load])
         friction = -damping * rate
@@ -145,18 +161,24 @@ class _Along:
         forcing[..., unknowns.damping] = friction
         forcing[..., unknowns.torque] = self._torque
         forcing[..., unknowns.inertia] = -path.acceleration
-        forcing[..., unknowns.delay] = spring * path.speed * (self._lines @ path.turned(self._beta))
+        forcing[..., unknowns.delay] = spring * self._speed_then * (self._lines @ path.turned(self._beta))
         if self._errors:
             stiff = -(omega**2) * self.stiffness
             errors = forcing[..., unknowns.displacement]
             np.multiply(self._lines, (_ERROR_UNIT * stiff)[..., None], out=errors)
             errors -= (_ERROR_UNIT * damping * path.speed)[..., None] * path.slopes(self._lines)
             bending = damping * path.speed * self._error_bend
-            forcing[..., unknowns.delay] += path.speed * (stiff * self._error_slope - bending)
+            forcing[..., unknowns.delay] += self._speed_then * (stiff * self._error_slope - bending)
+        np.multiply(forcing[..., unknowns.delay], path.time, out=forcing[..., unknowns.drift])
         if self._unheard is not None:
             forcing[..., unknowns.stiffness][self._unheard] = 0.0
             if self._errors:
                 forcing[..., unknowns.displacement][self._unheard] = 0.0
+        if self._hats is not None:
+            # More inertia slows all that moves: the whole of θ'' falls with it
+            total = self.excitation - damping * theta_dot - omega**2 * self.stiffness * theta
+            np.multiply(self._hats, -total[..., None], out=forcing[..., unknowns.size :])
+            forcing *= self.ease[..., None]
         return forcing
 
 

@@ -16,13 +16,13 @@ from .unknowns import Unknowns
 START_LOADS = tuple(1.5 * cmath.exp(0.5j * math.pi * quarter) for quarter in range(4))
 """Loads twice per output revolution, in units of the reference torque."""
 
-START_FREQUENCIES = (-0.12, -0.08, -0.04, 0.04, 0.08, 0.12)
-"""ln fn relative to the one given."""
+START_FREQUENCIES = (-1.2, -0.8, -0.4, 0.4, 0.8, 1.2)
+"""ln fn relative to the one given, in its standard deviations."""
 
-START_DELAYS = (-0.012, -0.006, -0.003, 0.003, 0.006, 0.012)
-"""Lags [s] between the clocks."""
+DELAY_STEP = 3e-3
+"""Distance [s] between starts for the lag of the clocks."""
 
-NEWEST = 4.5
+NEWEST = 3.0
 """Motion [s] of the newest segments on which other solutions are tried."""
 
 BETTER = 30.0
@@ -39,37 +39,31 @@ def newest_segments(segments: Sequence[Segment]) -> list[Segment]:
     return newest
 
 
-def load_start(unknowns: Unknowns, values: FloatArray, load: complex) -> FloatArray:
-    """Return values without any defects, and with a load twice per output revolution."""
-    start = values * ~unknowns.mask(unknowns.stiffness, unknowns.load, unknowns.displacement)
+def load_start(unknowns: Unknowns, load: complex) -> FloatArray:
+    """Return values without any defects, all that is given being right, and with a load twice per output revolution."""
+    start = unknowns.zero()
     start[unknowns.load_line(2)] = load.real, load.imag
     return start
 
 
-def load_starts(unknowns: Unknowns, values: FloatArray, *, thorough: bool) -> list[FloatArray]:
-    """Return the best values so far, and starts for the load, whose phase has local minima: all of them, or a few."""
-    loads = (0.0, *(START_LOADS if thorough else START_LOADS[::2]))
-    return [values, *(load_start(unknowns, values, load) for load in loads)]
+def load_starts(unknowns: Unknowns) -> list[FloatArray]:
+    """Starts for the load, whose phase has local minima."""
+    return [load_start(unknowns, load) for load in (0.0, *START_LOADS)]
 
 
-def other_starts(unknowns: Unknowns, *, frequency: bool, delay: bool, thorough: bool) -> list[FloatArray]:
-    """Starts for what was given and may be wrong: natural frequency and agreement of the clocks.
+def other_starts(unknowns: Unknowns, std: FloatArray) -> list[FloatArray]:
+    """Starts for a natural frequency that is not the one given, by its standard deviation among those of all."""
+    return _shifted(unknowns, unknowns.frequency, float(std[unknowns.frequency]) * np.asarray(START_FREQUENCIES))
 
-    Parameters
-    ----------
-    unknowns : Unknowns
-    frequency, delay : bool
-        Which of them may be wrong.
-    thorough : bool
-        Whether to try all starts, or a few.
-    """
-    first, step = (0, 1) if thorough else (1, 3)
-    wanted: list[tuple[int, float]] = []
-    if frequency:
-        wanted += [(unknowns.frequency, shift) for shift in START_FREQUENCIES[first::step]]
-    if delay:
-        wanted += [(unknowns.delay, lag) for lag in START_DELAYS[first::step]]
-    return [np.where(unknowns.mask(place), value, 0.0) for place, value in wanted]
+
+def delay_starts(unknowns: Unknowns, std: FloatArray) -> list[FloatArray]:
+    """Starts for clocks that do not agree."""
+    steps = int(0.75 * float(std[unknowns.delay]) / DELAY_STEP)
+    return _shifted(unknowns, unknowns.delay, DELAY_STEP * np.r_[-steps:0, 1 : steps + 1])
+
+
+def _shifted(unknowns: Unknowns, place: int, shifts: FloatArray) -> list[FloatArray]:
+    return [np.where(unknowns.mask(place), shift, 0.0) for shift in shifts if shift]
 
 
 def signal_level(segments: Sequence[Segment]) -> NoiseFloor:
@@ -78,8 +72,8 @@ def signal_level(segments: Sequence[Segment]) -> NoiseFloor:
     return NoiseFloor.white(max(float(np.mean(densities)), 1e-30))
 
 
-def multistart_newest(problem: Problem, starts: Sequence[FloatArray], *, rounds: int) -> tuple[Problem, Fit]:
-    """Solve from several starts on the newest data; the problem returned has the floor that belongs to the best fit."""
+def multistart_newest(problem: Problem, starts: Sequence[FloatArray], *, rounds: int) -> list[tuple[Problem, Fit]]:
+    """Solve from several starts on the newest data; return the solutions, the best first, with their floors."""
     newest = newest_segments(problem.segments)
     return replace(problem, segments=newest, floor=signal_level(newest)).multistart(starts, rounds=rounds)
 

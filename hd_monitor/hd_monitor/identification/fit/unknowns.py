@@ -8,6 +8,7 @@ import numpy as np
 
 from ...arrays import BoolArray, ComplexArray, FloatArray
 from ...model.parameters import Dynamics
+from ...settings import Uncertainty
 from ..segment.segment import FREQUENCY_MARGIN
 
 TORQUE_LINES: Mapping[int, str] = {1: "", 2: ""}
@@ -16,6 +17,23 @@ TORQUE_LINES: Mapping[int, str] = {1: "", 2: ""}
 The first two are the load's (gravity, and the fluctuation that mimics the other spline) and accuse nothing. A row that
 names a part is said to stand out as soon as the data support it.
 """
+
+EXACT = Uncertainty(
+    natural_frequency=0.0,
+    damping=0.0,
+    inertia=0.0,
+    measured_torque=0.0,
+    assumed_torque=0.0,
+    delay=0.0,
+    clock_drift=0.0,
+)
+"""Nothing of what is given is in doubt."""
+
+LARGEST_BETA = 0.1
+"""Standard deviation of the first β before any data; of the k-th a k-th part, as pitch errors fall with their order."""
+
+RELATIVE = 1.5
+"""Standard deviation of ln(torque) where nothing is known of it."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -33,11 +51,14 @@ class Unknowns:
     transmission_error : float
         Size [arcmin peak to peak] of the transmission error that is expected at each line before any data; 0: there is
         none, and none is fitted.
+    uncertainty : Uncertainty
+        How sure the scalars are that the parameters give.
     """
 
     harmonics: int
     load_orders: tuple[int, ...]
     transmission_error: float = 0.0
+    uncertainty: Uncertainty = EXACT
 
     @property
     def circular_spline(self) -> slice:
@@ -87,7 +108,7 @@ class Unknowns:
 
     @property
     def torque(self) -> int:
-        """Place of ln(torque / given torque)."""
+        """Place of ln(torque / inertia), over that of those given."""
         return self.frequency + 2
 
     @property
@@ -96,14 +117,19 @@ class Unknowns:
         return self.frequency + 3
 
     @property
+    def drift(self) -> int:
+        """Place of the rate [s/s] at which that time grows."""
+        return self.frequency + 4
+
+    @property
     def inertia(self) -> int:
         """Place of the part of the inertia whose own acceleration winds up the reducer beside the known torque."""
-        return self.frequency + 4
+        return self.frequency + 5
 
     @property
     def size(self) -> int:
         """Number of unknowns."""
-        return self.frequency + 5
+        return self.frequency + 6
 
     def load_line(self, order: int) -> list[int]:
         """Places of the real and the imaginary part of the load phasor at an order."""
@@ -121,9 +147,17 @@ class Unknowns:
             mask[place] = True
         return mask
 
-    def given_std(self) -> FloatArray:
-        """Standard deviations of the unknowns before any data, shape (unknowns,)."""
-        return self._scale(0)
+    def given_std(self, torque: float) -> FloatArray:
+        """Standard deviations of the unknowns before any data, shape (unknowns,); 0 of what is known exactly.
+
+        Parameters
+        ----------
+        torque : float
+            Standard deviation of ln(torque): it depends on where the torque comes from.
+        """
+        std = self._scale(0)
+        std[self.torque] = math.hypot(torque, self.uncertainty.inertia)
+        return std
 
     def bounds(self) -> FloatArray:
         """Magnitudes that the unknowns cannot exceed, shape (unknowns,): a value there is not a measurement."""
@@ -137,15 +171,18 @@ class Unknowns:
         return self._scale(2)
 
     def _scale(self, column: int) -> FloatArray:
-        table: tuple[tuple[int | slice, float, float, float], ...] = (
+        given = self.uncertainty
+        fluctuation = np.tile(LARGEST_BETA / (1.0 + np.arange(self.harmonics)), 4)
+        table: tuple[tuple[int | slice, float | FloatArray, float, float], ...] = (
             # place, standard deviation before any data, bound, linear range
-            (self.stiffness, 0.3, math.inf, 0.05),
+            (self.stiffness, fluctuation, math.inf, 0.05),
             (self.load, 2.0, math.inf, 1.0),
             (self.displacement, self.transmission_error / math.sqrt(2.0), math.inf, 5.0),
-            (self.frequency, 0.1, math.log(FREQUENCY_MARGIN), 0.01),
-            (self.damping, 0.5, 1.5, 0.3),
-            (self.torque, 1.5, 4.0, 1.0),
-            (self.delay, 0.01, 0.05, 5e-4),
+            (self.frequency, given.natural_frequency, math.log(FREQUENCY_MARGIN), 0.01),
+            (self.damping, given.damping, 1.5, 0.3),
+            (self.torque, RELATIVE, 4.0, 1.0),
+            (self.delay, given.delay, 0.1, 5e-4),
+            (self.drift, given.clock_drift, 1e-2, 5e-5),
             (self.inertia, 0.7, math.inf, 1.0),
         )
         scale = np.empty(self.size)

@@ -25,6 +25,8 @@ class Motion(NamedTuple):
     """Known torque [N·m]."""
     step: float
     """Sample period [s]."""
+    start: float
+    """Time of the first sample [s]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -43,6 +45,8 @@ class Path:
         Known torque [N·m].
     speed, acceleration : ndarray, shape S
         Output speed [rad/s] and its derivative [rad/s²].
+    time : ndarray, shape S
+        [s]
     """
 
     lines: FloatArray
@@ -51,15 +55,24 @@ class Path:
     torque: FloatArray
     speed: FloatArray
     acceleration: FloatArray
+    time: FloatArray
 
-    def lines_after(self, delay: float) -> FloatArray:
-        """Return `lines` at the angle that the output has `delay` [s] later."""
-        if delay == 0.0:
+    def lines_after(self, delay: float, drift: float) -> FloatArray:
+        """Return `lines` at the angle that the output has `delay` [s] later, which grows by `drift` [s/s]."""
+        if delay == 0.0 and drift == 0.0:
             return self.lines
-        shift = np.multiply.outer(self.speed * delay, self.rates)
+        later = delay + drift * self.time
+        turn = 1j * (self.speed + 0.5 * later * self.acceleration) * later
         lines = self.lines.reshape(*self.lines.shape[:-1], 2, 2, -1)
-        turned = np.concatenate([lines[..., 1:, :], -lines[..., :1, :]], axis=-2)
-        return np.asarray(np.cos(shift) * self.lines + np.sin(shift) * turned.reshape(self.lines.shape))
+        rates = self.rates.reshape(2, 2, -1)
+        after = np.empty_like(lines)
+        for spline in range(2):
+            steps = powers(np.exp(rates[spline, 0, 0] * turn), lines.shape[-1])[1:]
+            for k, step in enumerate(steps):
+                cosine, sine = lines[..., spline, 0, k], lines[..., spline, 1, k]
+                after[..., spline, 0, k] = step.real * cosine + step.imag * sine
+                after[..., spline, 1, k] = step.real * sine - step.imag * cosine
+        return np.asarray(after.reshape(self.lines.shape))
 
     def turned(self, series: FloatArray) -> FloatArray:
         """Return the series whose lines are the derivative, by the output angle, of those of `series`."""
@@ -104,6 +117,7 @@ def _path(motion: Motion, places: FloatArray, reducer: Reducer, harmonics: int, 
         torque=np.interp(places, samples, motion.torque),
         speed=np.interp(places, samples, motion.speed),
         acceleration=np.interp(places, samples, motion.acceleration),
+        time=motion.start + motion.step * places,
     )
 
 

@@ -18,6 +18,7 @@ from .decimation import decimate
 from .low_pass import LowPass
 from .path import Motion, Path, paths_along
 from .torque import own_acceleration, regress_torque
+from .wander import Wander
 
 FREQUENCY_MARGIN = 1.25
 """Factor by which the natural frequency may turn out higher than given."""
@@ -61,6 +62,8 @@ class Segment:
         What the sensor hears.
     raw_samples : int
         Samples of the sensor behind it.
+    wander : Wander or None
+        Course of the inertia; None if it is constant.
     """
 
     period: float
@@ -76,6 +79,7 @@ class Segment:
     highest_frequency: float
     low_pass: LowPass
     raw_samples: int
+    wander: Wander | None = None
 
     def __len__(self) -> int:
         """Return the number of samples, those left out included."""
@@ -90,6 +94,10 @@ class Segment:
     def mirrored(self) -> "Segment":
         """Return the segment as a sensor mounted the other way round would have recorded it."""
         return replace(self, acceleration=-self.acceleration)
+
+    def wandering(self) -> "Segment":
+        """Return the segment with an inertia that may move."""
+        return replace(self, wander=self.wander or Wander.none(self.duration))
 
     @property
     def duration(self) -> float:
@@ -189,7 +197,7 @@ class SegmentBuilder:
             )
         own = own_acceleration(speed, step)
         known = np.full(angle.size, torque) if torque is not None else regress_torque(measured, angle, speed, own, step)
-        motion = Motion(angle, speed, own, known, step)
+        motion = Motion(angle, speed, own, known, step, record.start + period * signal.first)
         at_steps, at_gauss = paths_along(motion, self.reducer, self.harmonics, self.load_orders, steps)
         return Segment(
             period=step,

@@ -71,13 +71,12 @@ class ToothTrial:
         builder = replace(self.builder, reducer=reducer, keep_tones=True)
         try:
             segments = [builder.build([record], None) for record in _records(problem.segments)]
-            own = replace(problem, segments=segments, floor=signal_level(segments), patience=1)
+            own = replace(problem, segments=segments, floor=signal_level(segments))
             if start is not None:
                 return own.solve(start, rounds=_ROUNDS)
             u = problem.predictor.unknowns
-            healthy = np.where(u.mask(u.torque), self.values, 0.0)
-            starts = [load_start(u, healthy, load) for load in (0.0, START_LOADS[0])]
-            return own.multistart(starts, rounds=_ROUNDS)[1]
+            starts = [load_start(u, load) for load in (0.0, START_LOADS[0])]
+            return own.multistart(starts, rounds=_ROUNDS)[0][1]
         except (ParameterError, FloatingPointError, np.linalg.LinAlgError):
             return None  # these teeth's lines are too fast for the sampling rate, or nothing fits
 

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...acquisition.record import Record
+from ...arrays import BoolArray, FloatArray
 from ...model.parameters import Dynamics
 from ...settings import JointSettings
 from ..checks.residual import LineResidual
@@ -15,7 +16,7 @@ from ..fit.information import Information
 from ..fit.linearisation import Predictor
 from ..fit.multistart import signal_level
 from ..fit.noise import NoiseFloor
-from ..fit.unknowns import TORQUE_LINES, Unknowns
+from ..fit.unknowns import RELATIVE, TORQUE_LINES, Unknowns
 from ..segment.segment import Segment, SegmentBuilder
 from .state import Setup, State
 
@@ -23,9 +24,6 @@ NOMINAL_INDEX = 0.05
 """Of the larger spline, where an unknown torque leaves the scale open."""
 
 _TRIAL_WIND_UP = 1e-3  # rad
-
-_PATIENCE = 3
-"""Factor on the rounds of a fit with transmission errors: where they resemble the stiffness, steps follow a ridge."""
 
 
 class Unexplained(NamedTuple):
@@ -43,14 +41,11 @@ class Context:
     ----------
     settings : JointSettings
     unknowns : Unknowns
-    prior : Information
-        What is known of the unknowns before any data.
     builder : SegmentBuilder
     """
 
     settings: JointSettings
     unknowns: Unknowns
-    prior: Information
     builder: SegmentBuilder
 
     @classmethod
@@ -60,6 +55,7 @@ class Context:
             harmonics=settings.analysis.harmonics,
             load_orders=tuple(TORQUE_LINES),
             transmission_error=settings.transmission_error,
+            uncertainty=settings.uncertainty,
         )
         builder = SegmentBuilder(
             reducer=settings.reducer,
@@ -69,8 +65,7 @@ class Context:
             inertial=settings.vibration.gravity,
             bandwidth=settings.input.bandwidth,
         )
-        prior = Information.gaussian(unknowns.given_std())
-        return cls(settings=settings, unknowns=unknowns, prior=prior, builder=builder)
+        return cls(settings=settings, unknowns=unknowns, builder=builder)
 
     @property
     def given(self) -> Dynamics:
@@ -93,6 +88,7 @@ class Context:
         """
         torque = None
         if not np.isfinite(records[0].torque).all():
+            setup = replace(setup, measured=False)
             torque = self.given_torque or setup.nominal_torque
             if torque is None:
                 torque = self._find_nominal(records)
@@ -102,15 +98,32 @@ class Context:
             level = float(np.sqrt(np.mean(segment.at_steps.torque**2)))
             kept_from_zero = max(level, 0.1 * abs(self.given_torque), 1e-9 * self.given.stiffness)
             setup = replace(setup, reference_torque=kept_from_zero)
+        if setup.wanders:
+            segment = segment.wandering()
         return (segment if setup.mounting > 0.0 else segment.mirrored()), setup
 
     def predictor(self, setup: Setup) -> Predictor:
         """Predictor in the unit of load fluctuations that a setup has found."""
         return Predictor(unknowns=self.unknowns, given=self.given, reference_torque=setup.reference_torque)
 
+    def given_std(self, setup: Setup) -> FloatArray:
+        """Standard deviations of the unknowns before any data, shape (unknowns,)."""
+        sure = self.settings.uncertainty
+        if setup.nominal_torque is not None:
+            return self.unknowns.given_std(RELATIVE)
+        return self.unknowns.given_std(sure.measured_torque if setup.measured else sure.assumed_torque)
+
+    def prior(self, setup: Setup) -> Information:
+        """What is known of the unknowns before any data."""
+        return Information.gaussian(self.given_std(setup))
+
+    def active(self, setup: Setup) -> BoolArray:
+        """Unknowns that are fitted: all but what was given as exact, shape (unknowns,)."""
+        return np.asarray(self.given_std(setup) > 0.0)
+
     def known(self, state: State) -> Information:
         """Return all that is known of the unknowns: what was given, and what a state has learnt."""
-        return self.prior + state.information
+        return self.prior(state.setup) + state.information
 
     def problem(self, state: State, segments: Sequence[Segment], prior: Information) -> Problem:
         """Return the problem of explaining some segments with what a state allows."""
@@ -119,13 +132,12 @@ class Context:
             predictor=self.predictor(state.setup),
             prior=prior,
             floor=signal_level(segments) if state.floor is None else state.floor,
-            active=state.active,
-            patience=_PATIENCE if self.unknowns.transmission_error else 1,
+            active=self.active(state.setup),
         )
 
     def problem_of_all(self, state: State) -> Problem:
         """Return the problem of explaining all segments kept."""
-        return self.problem(state, state.recent, self.prior)
+        return self.problem(state, state.recent, self.prior(state.setup))
 
     def unexplained(self, state: State, fit: Fit) -> Unexplained:
         """What is not explained by a fit and those before it."""
@@ -144,7 +156,7 @@ class Context:
         problem = Problem(
             segments=[segment],
             predictor=self.predictor(Setup(reference_torque=unit)),
-            prior=self.prior,
+            prior=self.prior(Setup()),
             floor=signal_level([segment]),
             active=u.mask(u.stiffness),
         )

@@ -6,30 +6,31 @@ from dataclasses import replace
 import numpy as np
 
 from ...acquisition.record import Record
-from ...arrays import FloatArray
 from ...errors import HdMonitorError
 from ...limitation import LimitationCode, blocker
 from ...settings import JointSettings
 from ..fit.gauss_newton import Fit
-from ..fit.multistart import multistart_newest
-from ..fit.score_test import score_tests
 from ..teeth.trial import ToothTrial
 from ..teeth.watch import ToothWatch
 from .conclusion import conclude
 from .context import Context, Unexplained
-from .limitations import CONTRADICTION
 from .schedule import POOR, SECOND_LOOK
-from .search import look_elsewhere, restart, turn_sensor
+from .search import fit_wandering, is_followed, let_inertia_wander, look_elsewhere, settle, turn_sensor
 from .state import WINDOW, State
 
 WELL_KNOWN = 0.02
 """Standard deviation of the indexes over the larger of index and warn limit that satisfies."""
 
-FREQUENCY_KNOWN, DAMPING_KNOWN = 0.005, 0.05
-"""Standard deviations of ln fn and ln ζ below which data know them better than the parameters do."""
+_WALK = 0.01**2 / 60.0
+"""Variance of a random walk of ln fn [1/s]: temperature, load and pose move it by about 1 % in a minute."""
 
-_ROUNDS, _FEW_ROUNDS, _UPDATE_ROUNDS = 8, 4, 3
+MOST_UNFOLLOWED = 3
+"""Segments in a row that are left out since the course of the inertia was not found."""
+
+_UPDATE_ROUNDS = 3
 _MOVED = 3.0  # standard deviations by which values may move before earlier segments are linearised again
+_UNSETTLED = 3.0  # factor by which motion grows between looks at one speed, where solutions resemble each other
+_GROWN = 1.5  # factor by which motion may grow before that is done in any case
 
 
 class Estimator:
@@ -61,7 +62,12 @@ class Estimator:
 
     def aged(self, state: State, duration: float) -> State:
         """Return the state after `duration` [s] of motion that was not looked at."""
-        return state.aged(duration, self._context.settings.analysis.memory)
+        context = self._context
+        state = state.aged(duration, context.settings.analysis.memory)
+        if not context.settings.uncertainty.natural_frequency:
+            return state
+        walked = state.information.diffused(context.unknowns.frequency, _WALK * duration)
+        return replace(state, information=walked)
 
     def update(self, state: State, records: Sequence[Record]) -> State:
         """Return the state after a segment, given as records that follow each other.
@@ -82,47 +88,50 @@ class Estimator:
             return state
         if float(np.ptp(values)) == 0.0:
             return replace(state, unusable=blocker(LimitationCode.VIBRATION_CONSTANT))
-        state = state.with_segment(segment, setup)
-        if setup.nominal_torque is not None:
-            state = replace(state, active=state.active | u.mask(u.torque))
-        state, fit, left = self._search(*self._fit(state))
-        state, questioned = self._question(state, fit)
-        if questioned is not fit:
-            fit = questioned
-            left = context.unexplained(state, fit)
+        fitted = self._fit(state.with_segment(segment, setup))
+        if fitted is None:
+            return replace(state, unfollowed=state.unfollowed + 1, unusable=blocker(LimitationCode.INERTIA_UNFOLLOWED))
+        state, fit = fitted
+        state, fit, left = self._search(state, fit)
+        older = state.recent[: -len(fit.segments)]
         state = replace(
             state,
+            recent=(*older, *(item.segment for item in fit.segments)),
+            unfollowed=0,
             values=fit.values,
             floor=left.floor,
             residual=left.residual,
             information=state.information.plus(fit.equations, fit.values),
+            heard=state.heard + fit.equations.silence - fit.equations.cost,
         )
         anew = state.schedule.restarted == state.seconds
         state = replace(state, teeth=self._question_teeth(state, fit), tones=state.tones.after(fit.segments, anew=anew))
         state = replace(state, result=conclude(context, state, fit))
         return self.aged(state, sum(item.segment.duration for item in fit.segments))
 
-    def _fit(self, state: State) -> tuple[State, Fit]:
-        """Fit the newest segment on top of what is known; from time to time, while all are kept, all of them."""
+    def _fit(self, state: State) -> tuple[State, Fit] | None:
+        """Fit the newest segment on top of what is known; while all are kept, all of them again if values move.
+
+        None if the course of a wandering inertia was not found.
+        """
         context = self._context
         if state.floor is None:
-            state = replace(state, schedule=state.schedule.with_look(state.seconds))
-            small, best = multistart_newest(context.problem_of_all(state), [state.values], rounds=_FEW_ROUNDS)
-            return restart(context, state, small, [best.values], _FEW_ROUNDS)
-        young = state.seconds <= WINDOW
-        # Where errors resemble the stiffness, what was linearised at other values soon misleads
-        ambiguous = bool(context.unknowns.transmission_error)
-        if young and (ambiguous or state.seconds >= 2.0 * state.schedule.restarted):
-            return self._fit_all(state, state.values)
-        fit = context.problem(state, state.recent[-1:], context.known(state)).solve(state.values, rounds=_UPDATE_ROUNDS)
+            return look_elsewhere(context, state, None)
+        newest = context.problem(state, state.recent[-1:], context.known(state))
+        if state.setup.wanders:
+            fit = fit_wandering(newest, state.values, state.recent[-2] if len(state.recent) > 1 else None)
+            if not is_followed(fit) and state.unfollowed < MOST_UNFOLLOWED:
+                return None
+            state = replace(state, recent=(*state.recent[:-1], fit.segments[-1].segment))
+        else:
+            fit = newest.solve(state.values, rounds=_UPDATE_ROUNDS)
         change = fit.values - state.values
-        if young and float(change @ state.information.matrix @ change) > _MOVED**2:
-            return self._fit_all(state, fit.values)
+        grown = state.seconds >= _GROWN * state.schedule.restarted
+        if state.seconds <= WINDOW and (grown or float(change @ state.information.matrix @ change) > _MOVED**2):
+            starts = [fit.values] if state.rival is None else [fit.values, state.rival]
+            state = state.restarted()
+            return settle(context.problem_of_all(state), state, starts)
         return state, fit
-
-    def _fit_all(self, state: State, start: FloatArray) -> tuple[State, Fit]:
-        state = state.restarted()
-        return state, self._context.problem_of_all(state).solve(start, rounds=_ROUNDS)
 
     def _search(self, state: State, fit: Fit) -> tuple[State, Fit, Unexplained]:
         """Look for other solutions, as often as effort allows, if the fit leaves more at the lines than noise could."""
@@ -130,38 +139,22 @@ class Estimator:
         left = context.unexplained(state, fit)
         inflation = left.residual.inflation(state.coverage.span)
         state = replace(state, schedule=state.schedule.after(inflation, state.seconds))
+        ambiguous = bool(context.unknowns.transmission_error) and not state.coverage.speed_varies
+        unsettled = ambiguous and _UNSETTLED * state.schedule.looked <= state.seconds <= WINDOW
         # With the wrong teeth no solution is right
         hopeless = state.teeth.doubt is not None and state.schedule.looked >= SECOND_LOOK
-        if hopeless or not state.schedule.is_due(inflation, state.seconds):
+        # Where the inertia moves, another solution for a few seconds is one of its courses
+        if hopeless or state.setup.wanders or not (unsettled or state.schedule.is_due(inflation, state.seconds)):
             return state, fit, left
         state, fit = look_elsewhere(context, state, fit)
         left = context.unexplained(state, fit)
-        if left.residual.inflation(state.coverage.span) > POOR:
+        if state.seconds <= WINDOW and left.residual.inflation(state.coverage.span) > POOR:
             state, fit = turn_sensor(context, state, fit)
             left = context.unexplained(state, fit)
+        if left.residual.inflation(state.coverage.span) > POOR:
+            state, fit = let_inertia_wander(context, state, fit)
+            left = context.unexplained(state, fit)
         return state, fit, left
-
-    def _question(self, state: State, fit: Fit) -> tuple[State, Fit]:
-        """Ask whether what was given agrees with the data, and estimate what does not."""
-        context, u = self._context, self._context.unknowns
-        candidates = [u.delay, u.frequency, u.damping] if context.settings.refine_dynamics else [u.delay]
-        known = {u.frequency: FREQUENCY_KNOWN, u.damping: DAMPING_KNOWN} if state.coverage.speed_varies else {}
-        for _ in candidates:
-            information = context.known(state).plus(fit.equations, fit.values)
-            waiting = [place for place in candidates if not state.active[place]]
-            tests = score_tests(waiting, information, fit.values, state.active, u.given_std())
-            wrong = [
-                place
-                for place in waiting
-                if tests[place].significance > CONTRADICTION or tests[place].std < known.get(place, 0.0)
-            ]
-            if not wrong:
-                break
-            worst = max(wrong, key=lambda place: tests[place].significance)
-            state = replace(state, active=state.active | u.mask(worst))
-            segments = [item.segment for item in fit.segments]
-            fit = context.problem(state, segments, context.known(state)).solve(fit.values, rounds=_ROUNDS)
-        return state, fit
 
     def _question_teeth(self, state: State, fit: Fit) -> ToothWatch:
         """Ask whether other tooth numbers than those given explain the recent motion better."""

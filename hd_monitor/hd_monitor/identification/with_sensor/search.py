@@ -3,52 +3,66 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from ...arrays import FloatArray
 from ..fit.gauss_newton import Fit, Problem
-from ..fit.multistart import is_better, load_starts, multistart_newest, newest_segments, other_starts
+from ..fit.multistart import delay_starts, is_better, load_starts, multistart_newest, newest_segments, other_starts
+from ..fit.noise import NoiseFloor
+from ..segment.segment import Segment
+from ..segment.wander import Wander
 from .context import Context
 from .state import State
 
+FOLLOWED = 3.0
+"""Cost over its expectation up to which the course of an inertia counts as found."""
+
 _TURNED = 0.3  # part of the misfit that may be left once the sensor's sign is turned
-_ROUNDS, _FEW_ROUNDS = 8, 4
-_YOUNG = 10.0  # s of motion before which a look for other solutions tries all starts
+_ROUNDS = 10
+_EFFORT = 16.0  # s of motion that a fit of all segments may predict
+_FEWEST = 4
+_INERTIAS = (-0.25, 0.0, 0.25)  # ln of an inertia over the mean one, from which a course is sought
+_COARSE_ROUNDS, _WANDER_ROUNDS = 3, 12
+_LIKELY = 2  # courses that are refined
 
 
-def look_elsewhere(context: Context, state: State, fit: Fit) -> tuple[State, Fit]:
-    """Try other solutions on the newest segments.
+def rounds_for(segments: Sequence[Segment]) -> int:
+    """Rounds that a fit of some segments may take: a long fit goes on at the next update instead."""
+    return max(_FEWEST, min(_ROUNDS, round(_EFFORT / sum(segment.duration for segment in segments))))
 
-    If later none is better there, the fit stays as it is, and no effort goes into all recent segments.
+
+def look_elsewhere(context: Context, state: State, fit: Fit | None) -> tuple[State, Fit]:
+    """Try other solutions on the newest segments, beside the present fit if there is one.
+
+    If none is better there, the fit stays as it is, and no effort goes into all recent segments.
     """
-    u, refine, lag = context.unknowns, context.settings.refine_dynamics, state.coverage.speed_varies
-    active = state.active & ~u.mask(u.frequency, u.damping, u.delay)
-    if refine:
-        active = active | u.mask(u.frequency, u.damping)
-    if lag:
-        active = active | u.mask(u.delay)
-    thorough = state.seconds < _YOUNG
+    u = context.unknowns
     state = replace(state, schedule=state.schedule.with_look(state.seconds))
-    trial = replace(state, active=active)
-    starts = load_starts(u, np.where(active, fit.values, 0.0), thorough=thorough)
-    starts += other_starts(u, frequency=refine, delay=lag, thorough=thorough)
-    small, best = multistart_newest(context.problem_of_all(trial), starts, rounds=_ROUNDS)
-    if thorough:
-        return restart(context, trial, small, [best.values, starts[0]], _ROUNDS)
-    if is_better(small, best, fit.values):
-        return restart(context, trial, small, [best.values], _FEW_ROUNDS)
-    return state, fit
+    present = state.values if fit is None else fit.values
+    starts = [present, *load_starts(u), *other_starts(u, context.given_std(state.setup))]
+    if state.coverage.speed_varies:
+        starts += delay_starts(u, context.given_std(state.setup))
+    found = multistart_newest(context.problem_of_all(state), starts, rounds=_ROUNDS)
+    if fit is not None and not state.coverage.speed_varies:
+        # At one speed several solutions explain the motion nearly as well: those on all of it decide
+        state = state.restarted()
+        return settle(context.problem_of_all(state), state, [fit.values, *(other.values for _, other in found)])
+    if fit is not None and not is_better(*found[0], fit.values):
+        return state, fit
+    return restart(context, state, found[0][0].floor, [other.values for _, other in found])
 
 
-def restart(
-    context: Context, state: State, small: Problem, starts: Sequence[FloatArray], rounds: int
-) -> tuple[State, Fit]:
-    """Fit all segments kept, starting from the newest ones' result, and forget what was learnt from them before."""
+def restart(context: Context, state: State, floor: NoiseFloor, starts: Sequence[FloatArray]) -> tuple[State, Fit]:
+    """Fit all segments kept from several starts, and forget what was learnt from them before."""
     state = state.restarted()
     problem = context.problem_of_all(state)
-    whole = replace(problem, floor=small.floor)
-    fit = min((whole.solve(start, rounds=rounds) for start in starts), key=lambda f: f.cost)
-    return state, replace(problem, floor=fit.floor).solve(fit.values, rounds=rounds)
+    fits = [replace(problem, floor=floor).solve(start, rounds=_FEWEST) for start in starts]
+    best = min(fits, key=lambda fit: fit.cost)
+    return settle(replace(problem, floor=best.floor), state, [fit.values for fit in fits])
+
+
+def settle(problem: Problem, state: State, starts: Sequence[FloatArray]) -> tuple[State, Fit]:
+    """Solve from several starts, and keep in mind a second solution that the data do not exclude."""
+    fit, rival = problem.contend(starts, rounds=rounds_for(problem.segments))
+    return replace(state, rival=rival), fit
 
 
 def turn_sensor(context: Context, state: State, fit: Fit) -> tuple[State, Fit]:
@@ -58,18 +72,65 @@ def turn_sensor(context: Context, state: State, fit: Fit) -> tuple[State, Fit]:
     local minima come in either sign, so it is turned only where no load explains the motion as it is.
     """
     u = context.unknowns
-    active = state.active & ~u.mask(u.frequency, u.damping, u.delay)
     turned = replace(
         state,
         recent=tuple(segment.mirrored() for segment in state.recent),
-        active=active,
         setup=replace(state.setup, mounting=-state.setup.mounting),
     )
-    start = np.where(active, fit.values, 0.0) * np.where(u.mask(u.stiffness, u.displacement), -1.0, 1.0)
-    starts = load_starts(u, start, thorough=True)
-    small, best = multistart_newest(context.problem_of_all(turned), starts, rounds=_ROUNDS)
+    small, best = multistart_newest(context.problem_of_all(turned), load_starts(u), rounds=_ROUNDS)[0]
     if not is_better(replace(small, segments=newest_segments(state.recent)), best, fit.values):
         return state, fit
-    turned, other = restart(context, turned, small, [best.values], _ROUNDS)
+    turned, other = restart(context, turned, small.floor, [best.values])
     left, left_turned = (context.unexplained(*pair).residual.misfit for pair in ((state, fit), (turned, other)))
     return (state, fit) if left_turned > _TURNED * left else (turned, other)
+
+
+def let_inertia_wander(context: Context, state: State, fit: Fit) -> tuple[State, Fit]:
+    """Try an inertia that moves along the motion, as an arm's does with its pose."""
+    wandering = replace(
+        state,
+        recent=tuple(segment.wandering() for segment in state.recent),
+        setup=replace(state.setup, wanders=True),
+    )
+    starts = [fit.values, context.unknowns.zero()]
+    small, best = multistart_newest(context.problem_of_all(wandering), starts, rounds=_ROUNDS)[0]
+    if not is_better(replace(small, segments=newest_segments(state.recent)), best, fit.values):
+        return state, fit
+    return restart(context, wandering, small.floor, [best.values])
+
+
+def fit_wandering(problem: Problem, values: FloatArray, before: Segment | None) -> Fit:
+    """Fit the newest segment, whose inertia may be anything at its start and move along it.
+
+    Parameters
+    ----------
+    problem : Problem
+        Of that segment on top of what is known.
+    values : ndarray, shape (unknowns,)
+    before : Segment or None
+        The one before it, which may continue into it.
+    """
+    (segment,) = problem.segments
+    starts = list(_INERTIAS)
+    if before is not None and before.wander is not None:
+        starts.append(float(before.wander.values[-1]))
+
+    def solve(wander: Wander, rounds: int) -> Fit:
+        return replace(problem, segments=[replace(segment, wander=wander)]).solve(values, rounds=rounds)
+
+    coarse = [solve(Wander.coarse(segment.duration, start), _COARSE_ROUNDS) for start in starts]
+    best: Fit | None = None
+    for fit in sorted(coarse, key=lambda fit: fit.cost)[:_LIKELY]:
+        course = fit.segments[0].segment.wander
+        assert course is not None
+        fine = solve(course.fine(), _WANDER_ROUNDS)
+        best = fine if best is None or fine.cost < best.cost else best
+        if is_followed(best):
+            break
+    assert best is not None
+    return best
+
+
+def is_followed(fit: Fit) -> bool:
+    """Whether a fit explains the motion but for noise, as it does once the course of the inertia is found."""
+    return fit.equations.cost < FOLLOWED * fit.equations.freedom

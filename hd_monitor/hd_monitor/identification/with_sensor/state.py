@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass, field, replace
 
-from ...arrays import BoolArray, FloatArray
+from ...arrays import FloatArray
 from ...limitation import Limitation
 from ..checks.coverage import Coverage
 from ..checks.residual import LineResidual
@@ -15,6 +15,9 @@ from ..result import Identification
 from ..segment.segment import Segment
 from ..teeth.watch import ToothWatch
 from .schedule import Schedule
+
+UNSEEN = 3.0
+"""Amplitude wrongly taken for defects, over that left at the lines: the unknowns follow what they can of anything."""
 
 WINDOW = 16.0
 """Motion [s] that is kept to be fitted again as a whole; from then on each segment is used once."""
@@ -28,15 +31,21 @@ class Setup:
     ----------
     nominal_torque : float or None
         Torque [N·m] used in place of an unknown one; None as long as the torque is known.
+    measured : bool
+        Whether all torque so far was measured.
     reference_torque : float
         Torque [N·m] in whose unit load fluctuations are expressed; 0 before the first segment.
     mounting : float
         1, or -1 for a sensor whose sign is against that of the torque.
+    wanders : bool
+        Whether the inertia moves, as an arm's does with its pose.
     """
 
     nominal_torque: float | None = None
+    measured: bool = True
     reference_torque: float = 0.0
     mounting: float = 1.0
+    wanders: bool = False
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -46,14 +55,18 @@ class State:
     Attributes
     ----------
     values : ndarray, shape (unknowns,)
-    active : ndarray of bool, shape (unknowns,)
-        Unknowns that are fitted.
     information : Information
         Of all segments used, without the prior.
     floor : NoiseFloor or None
         None before the first segment.
     residual : LineResidual
         What is left at the lines.
+    heard : float
+        What the fits explain of the vibration, in units of the noise: the fall of the cost since nothing is predicted.
+    rival : ndarray or None, shape (unknowns,)
+        Values of another solution that the data do not exclude yet.
+    unfollowed : int
+        Segments left out in a row since the course of the inertia was not found.
     recent : tuple of Segment
         The newest `WINDOW` of motion.
     coverage : Coverage
@@ -68,10 +81,12 @@ class State:
     """
 
     values: FloatArray
-    active: BoolArray
     information: Information
     floor: NoiseFloor | None
     residual: LineResidual
+    heard: float = 0.0
+    rival: FloatArray | None = None
+    unfollowed: int = 0
     recent: tuple[Segment, ...] = ()
     coverage: Coverage = field(default_factory=Coverage)
     setup: Setup = field(default_factory=Setup)
@@ -86,7 +101,6 @@ class State:
         """Return the state before any data."""
         return cls(
             values=unknowns.zero(),
-            active=unknowns.mask(unknowns.stiffness, unknowns.load, unknowns.displacement, unknowns.inertia),
             information=Information.none(unknowns.size),
             floor=None,
             residual=LineResidual.empty(unknowns.harmonics),
@@ -105,7 +119,8 @@ class State:
     @property
     def inflation(self) -> float:
         """Factor on the variances by which the model's misfit widens them."""
-        return max(self.residual.inflation(self.coverage.span), self.residual.overdispersion.inflation)
+        left = max(self.residual.inflation(self.coverage.span), self.residual.overdispersion.inflation)
+        return 1.0 + UNSEEN**2 * (left - 1.0)
 
     def with_segment(self, segment: Segment, setup: Setup) -> "State":
         """Return the state with a further segment, still to be fitted."""
@@ -119,6 +134,7 @@ class State:
         return replace(
             self,
             information=Information.none(self.values.size),
+            heard=0.0,
             schedule=replace(self.schedule, restarted=self.seconds),
         )
 
@@ -128,6 +144,7 @@ class State:
         return replace(
             self,
             information=self.information.faded(keep),
+            heard=keep * self.heard,
             floor=None if self.floor is None else self.floor.faded(keep),
             residual=self.residual.faded(keep),
             teeth=self.teeth.faded(keep),

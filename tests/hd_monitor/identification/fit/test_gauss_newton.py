@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hd_monitor.acquisition.record import Record
-from hd_monitor.identification.fit.gauss_newton import NEGLIGIBLE, FitStatus, Problem
+from hd_monitor.identification.fit.gauss_newton import DISTINCT, EXCLUDED, NEGLIGIBLE, FitStatus, Problem
 from hd_monitor.identification.fit.information import Information
 from hd_monitor.identification.fit.linearisation import Predictor
 from hd_monitor.identification.fit.noise import NoiseFloor
@@ -110,6 +110,49 @@ def test_the_last_step_leads_where_a_simulation_says(fitted):
     for moved, simulated in zip(fit.segments, there.segments, strict=True):
         scale = np.linalg.norm(simulated.residual)
         assert np.linalg.norm(moved.residual - simulated.residual) < 0.01 * scale
+
+
+def contended(monkeypatch, fitted, *, apart, dearer):
+    """What is made of two solutions, `apart` [standard deviations] from each other, the second dearer than the first.
+
+    Returns
+    -------
+    tuple of ndarray
+        Values of the first, those kept in mind as a rival, and those of the second.
+    """
+    task, fit = fitted
+    information = fit.equations.information + task.prior.matrix
+    step = UNKNOWNS.zero()
+    step[0] = apart / np.sqrt(information[0, 0])
+    other = replace(fit, values=fit.values + step, cost=fit.cost + dearer)
+    ends = {id(fit.values): fit, id(other.values): other}
+    monkeypatch.setattr(Problem, "solve", lambda self, start, *, rounds: ends[id(start)])
+    best, rival = task.contend([other.values, fit.values], rounds=1)
+    return best.values, rival, other.values
+
+
+def test_of_two_solutions_that_the_data_do_not_separate_the_second_is_kept_in_mind(monkeypatch, fitted):
+    best, rival, other = contended(monkeypatch, fitted, apart=1.1 * DISTINCT, dearer=0.9 * EXCLUDED)
+    assert best is fitted[1].values
+    assert rival is other
+
+
+@pytest.mark.parametrize(
+    ("apart", "dearer"), [(1.1 * DISTINCT, 1.1 * EXCLUDED), (0.9 * DISTINCT, 0.1)], ids=["excluded", "the same"]
+)
+def test_a_solution_that_is_excluded_or_the_same_is_no_rival(monkeypatch, fitted, apart, dearer):
+    best, rival, _ = contended(monkeypatch, fitted, apart=apart, dearer=dearer)
+    assert best is fitted[1].values
+    assert rival is None
+
+
+def test_starts_that_lead_to_the_truth_leave_no_rival(fitted):
+    task, fit = fitted
+    far = UNKNOWNS.zero()
+    far[UNKNOWNS.stiffness] = 0.05
+    best, rival = task.contend([far, UNKNOWNS.zero()], rounds=10)
+    assert rival is None
+    assert best.cost == pytest.approx(fit.cost, rel=1e-3)
 
 
 @pytest.fixture

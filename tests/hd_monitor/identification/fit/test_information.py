@@ -84,6 +84,26 @@ def test_unknowns_that_are_not_fitted_have_no_variance_and_do_not_widen_the_othe
     assert np.all(covariance.diagonal() <= information.covariance(ALL).diagonal() + 1e-12)
 
 
+def test_a_random_step_of_one_unknown_adds_its_variance_to_the_covariance_and_moves_nothing():
+    known = Information.gaussian(np.array([0.0, 0.5, 1.0, 0.0]))  # of two unknowns nothing but what the data say
+    for design in designs():
+        known = known.plus(equations(design, TRUTH, design @ TRUTH), TRUTH).faded(0.7)
+    for place, variance in enumerate([1e-6, 0.1, 3.0, 1e4]):
+        after = known.diffused(place, variance)
+        added = np.zeros((SIZE, SIZE))
+        added[place, place] = variance
+        assert np.linalg.inv(after.matrix) == pytest.approx(np.linalg.inv(known.matrix) + added, rel=1e-6)
+        assert after.covariance(ALL) == pytest.approx(known.covariance(ALL) + added, rel=1e-6)
+        assert best(after) == pytest.approx(best(known))
+
+
+def test_of_what_is_not_known_a_random_step_takes_nothing():
+    nothing = Information.none(SIZE).diffused(1, 0.3)
+    assert not nothing.matrix.any()
+    assert not nothing.vector.any()
+    assert not nothing.spread.any()
+
+
 def test_a_step_of_the_equations_is_the_same_as_linearising_there():
     design = designs()[0]
     data = design @ TRUTH + np.random.default_rng(4).standard_normal(len(design))

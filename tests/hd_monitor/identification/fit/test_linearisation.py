@@ -28,7 +28,8 @@ def values_at_random(seed):
     values[UNKNOWNS.load] = rng.standard_normal(4)
     values[UNKNOWNS.displacement] = 0.4 * rng.standard_normal(8)
     values[UNKNOWNS.frequency], values[UNKNOWNS.damping] = 0.03, -0.2
-    values[UNKNOWNS.torque], values[UNKNOWNS.delay], values[UNKNOWNS.inertia] = 0.1, 0.002, 0.6
+    values[UNKNOWNS.torque], values[UNKNOWNS.inertia] = 0.1, 0.6
+    values[UNKNOWNS.delay], values[UNKNOWNS.drift] = 0.002, 1e-3
     return values
 
 
@@ -47,16 +48,18 @@ def segment(acceleration, builder=BUILDER):
 
 
 def test_prediction_agrees_with_an_adaptive_integrator():
-    """Everything at once: both splines' stiffness and error, two loads, other dynamics, torque, lag and inertia."""
+    """Both splines' stiffness and error, two loads, other dynamics, torque, a lag that drifts, and inertia at once."""
     values = values_at_random(1)
     parts = ("circular_spline", "flexspline", "load", "circular_spline_error", "flexspline_error")
     phasors = {part: UNKNOWNS.phasors(values, getattr(UNKNOWNS, part)) for part in parts}
     dynamics = UNKNOWNS.dynamics(DYNAMICS, values)
     omega, zeta = dynamics.angular_frequency, dynamics.damping_ratio
 
+    def angle_after_lag(t):
+        return motion(t + values[UNKNOWNS.delay] + values[UNKNOWNS.drift] * t)[0]
+
     def stiffness(t):
-        late, _, _ = motion(t)
-        late = late + values[UNKNOWNS.delay] * motion(t)[1]
+        late = angle_after_lag(t)
         total = 1.0
         for order, series in zip(
             REDUCER.output_orders, (phasors["circular_spline"], phasors["flexspline"]), strict=True
@@ -66,7 +69,7 @@ def test_prediction_agrees_with_an_adaptive_integrator():
 
     def error(t):
         """e [rad] and its rate [rad/s] at the angle that the output has after the lag."""
-        late, speed = motion(t)[0] + values[UNKNOWNS.delay] * motion(t)[1], motion(t)[1]
+        late, speed = angle_after_lag(t), motion(t)[1]
         total, rate = 0.0, 0.0
         for order, part in zip(REDUCER.output_orders, parts[3:], strict=True):
             for k, b in enumerate(phasors[part] / 2.0 * np.pi / 180.0 / 60.0, start=1):
@@ -100,7 +103,7 @@ def test_jacobian_is_the_derivative_of_the_prediction(place):
     values = values_at_random(place)
     rng = np.random.default_rng(place)
     plan = segment(rng.standard_normal(700))
-    step = 1e-6 if place == UNKNOWNS.delay else 1e-5
+    step = 1e-6 if place in (UNKNOWNS.delay, UNKNOWNS.drift) else 1e-5
     change = np.zeros(UNKNOWNS.size)
     change[place] = step
     here = PREDICTOR.linearise(plan, values)
@@ -116,12 +119,13 @@ def test_jacobian_is_the_derivative_of_the_prediction(place):
 def test_lines_after_a_lag_are_those_of_the_later_angle():
     path = segment(np.ones(400)).at_steps
     times = np.arange(400) / RATE
-    angle, speed, _ = motion(times)
-    later = path.lines_after(0.004)
+    inner = slice(20, -20)  # at the ends the acceleration is one-sided
+    later = path.lines_after(0.004, 0.0)[inner]
     orders = [k * order for order in REDUCER.output_orders for k in (1, 2)]
-    expected = np.exp(1j * np.multiply.outer(angle + 0.004 * speed, orders))
-    np.testing.assert_allclose(later[:, [0, 1, 4, 5]], expected.real, atol=1e-9)
-    np.testing.assert_allclose(later[:, [2, 3, 6, 7]], -expected.imag, atol=1e-9)
+    expected = np.exp(1j * np.multiply.outer(motion(times[inner] + 0.004)[0], orders))
+    # by speed and acceleration: to the third order of the lag, a phase of 1e-5 rad
+    np.testing.assert_allclose(later[:, [0, 1, 4, 5]], expected.real, atol=2e-5)
+    np.testing.assert_allclose(later[:, [2, 3, 6, 7]], -expected.imag, atol=2e-5)
 
 
 def test_moving_on_without_a_simulation_is_right_to_second_order():

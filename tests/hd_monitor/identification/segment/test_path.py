@@ -12,7 +12,7 @@ from hd_monitor.identification.segment.path import Motion, paths_along, powers
 from hd_monitor.model.oscillator import gauss_times
 from hd_monitor.reducer import Mount, Reducer
 
-STEP = 1e-3  # s
+STEP, START = 1e-3, 0.4  # s
 
 
 def motion(seed: int, samples: int) -> Motion:
@@ -20,7 +20,7 @@ def motion(seed: int, samples: int) -> Motion:
     time = STEP * np.arange(samples)
     angle = rng.uniform(-3.0, 3.0) + 2.0 * np.sin(3.0 * time + rng.uniform(0.0, 6.0))
     speed = np.gradient(angle, STEP) if samples > 1 else np.zeros(samples)
-    return Motion(angle, speed, rng.normal(size=samples), rng.normal(size=samples), STEP)
+    return Motion(angle, speed, rng.normal(size=samples), rng.normal(size=samples), STEP, START)
 
 
 @given(
@@ -47,6 +47,7 @@ def test_lines_and_loads_are_those_of_the_angle_between_the_samples(
         np.testing.assert_allclose(path.rates, [order for own in orders for _ in range(2) for order in own])
         turning = [f(order * q) for f in (np.cos, _minus_sine) for order in loads]
         np.testing.assert_allclose(path.loads, np.stack(turning, axis=-1), atol=1e-12)
+        np.testing.assert_allclose(path.time, START + points, atol=1e-12)
         for given_there, name in ((path.torque, "torque"), (path.speed, "speed"), (path.acceleration, "acceleration")):
             np.testing.assert_allclose(given_there, np.interp(points, time, getattr(known, name)), atol=1e-12)
 
@@ -63,10 +64,18 @@ def test_the_grid_begins_and_ends_with_the_samples() -> None:
 
 def test_lines_after_a_delay_are_those_of_the_angle_then() -> None:
     known = motion(5, 30)
-    turned = known._replace(angle=known.angle + 2e-4 * known.speed, speed=known.speed)
+    later = 2e-4 * known.speed + 0.5 * 2e-4**2 * known.acceleration
+    turned = known._replace(angle=known.angle + later)
     now, _ = paths_along(known, Reducer(), 3, (1,), 1)
     then, _ = paths_along(turned, Reducer(), 3, (1,), 1)
-    np.testing.assert_allclose(now.lines_after(2e-4), then.lines, atol=1e-10)
+    np.testing.assert_allclose(now.lines_after(2e-4, 0.0), then.lines, atol=1e-10)
+
+
+def test_a_delay_that_drifts_is_at_each_instant_that_of_its_time() -> None:
+    now, _ = paths_along(motion(5, 30), Reducer(), 3, (1,), 1)
+    drifting = now.lines_after(2e-4, 1e-3)
+    for place, time in enumerate(now.time):
+        np.testing.assert_allclose(drifting[place], now.lines_after(2e-4 + 1e-3 * time, 0.0)[place], atol=1e-12)
 
 
 def test_powers_are_repeated_products() -> None:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from tests.simulated.cases import Case, simulate
 
+from hd_monitor.identification.with_sensor.context import Context
 from hd_monitor.identification.with_sensor.estimator import Estimator
 from hd_monitor.identification.with_sensor.state import WINDOW
 from hd_monitor.limitation import LimitationCode
@@ -94,7 +95,10 @@ def test_all_motion_is_fitted_again_while_it_is_kept(estimator, records, state):
 def test_evidence_fades_with_the_motion_that_passes(estimator, state):
     memory = TRUTH.settings().analysis.memory
     aged = estimator.aged(state, memory)
-    np.testing.assert_allclose(aged.information.matrix, math.exp(-1.0) * state.information.matrix)
+    left, frequency = state.information.faded(math.exp(-1.0)), Context.of(TRUTH.settings()).unknowns.frequency
+    walked = left.diffused(frequency, 0.01**2 * memory / 60.0)  # 1 % of the natural frequency in a minute
+    np.testing.assert_allclose(aged.information.matrix, walked.matrix)
+    assert aged.information.matrix[frequency, frequency] < 0.5 * left.matrix[frequency, frequency]
     np.testing.assert_allclose(aged.floor.freedom, math.exp(-1.0) * state.floor.freedom)
     assert aged.result is state.result
 
