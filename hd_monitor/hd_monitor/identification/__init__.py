@@ -18,13 +18,16 @@ line
 segment
     Contiguous motion on a uniform grid, the unit of evidence.
 unknowns
-    β phasors of both splines, load phasors, and ln fn, ln ζ, ln torque, clock delay and inertia as one vector.
+    Phasors of the splines' β and transmission errors and of the load, and ln fn, ln ζ, ln(torque / inertia), the lag of
+    the clocks, its drift and the inertia's own torque as one vector; each has a prior.
 prediction
     The model simulated along the measured motion; its linearisation adds the derivative by every unknown.
 information, score
     Curvature and slope of the log likelihood in the unknowns: sums over segments. Faded information stays Gaussian.
-score test
-    What the data alone ask of an unknown that is not fitted, in standard deviations.
+wander
+    Course of an inertia that moves within a segment, eliminated from what the segment says of the unknowns.
+rival
+    A second solution that the data do not exclude yet; its distance widens the intervals.
 noise floor
     Power of the residual over frequency, which weights every row of a fit.
 residual, overdispersion

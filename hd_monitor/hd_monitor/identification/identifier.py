@@ -32,11 +32,11 @@ class Identifier:
     Notes
     -----
     Prediction-error method in the time domain: the parametric model (eqs. 2-4 of Gu et al. 2021) is simulated along
-    the measured motion, and the β phasors of both splines, the phasors of unknown load fluctuations and, where the
-    data tell them, natural frequency, damping and the lag between the clocks are fitted to the measured acceleration
-    by Gauss-Newton steps, weighted by the noise floor that the fit leaves. It holds for any motion (dwell, run-up,
-    strokes), since stiffness and load are functions of the absolute angle, and for Gaussian noise it is the
-    maximum-likelihood estimate. What is computed, and when, depends on the data alone.
+    the measured motion, and the phasors of both splines' β and transmission errors, those of unknown load
+    fluctuations, and all that is given (natural frequency, damping, torque, the lag between the clocks) are fitted to
+    the measured acceleration by Gauss-Newton steps, weighted by the noise floor that the fit leaves. It holds for any
+    motion (dwell, run-up, strokes), since stiffness and load are functions of the absolute angle, and for Gaussian
+    noise it is the maximum of the posterior. What is computed, and when, depends on the data alone.
 
     Examples
     --------

@@ -5,10 +5,10 @@ from .groups import (
     PARAMETERS,
     ROS_PARAMETERS,
     DiagnosisSettings,
-    Uncertainty,
 )
 from .joint_settings import JointSettings
 from .joints import set_aside_foreign, split_joints
+from .uncertainty import Uncertainty
 
 __all__ = [
     "NODE_PARAMETERS",

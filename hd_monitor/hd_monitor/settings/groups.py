@@ -138,29 +138,6 @@ class LoadSettings:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Uncertainty:
-    """How sure the parameters are: standard deviations of what is given.
-
-    Attributes
-    ----------
-    natural_frequency, damping, inertia, measured_torque, assumed_torque : float
-        As parts of the value; the torque's are those of its scale.
-    delay : float
-        Of the lag between the stamps of vibration and joint states [s].
-    clock_drift : float
-        Of the rate at which that lag changes.
-    """
-
-    natural_frequency: float
-    damping: float
-    inertia: float
-    measured_torque: float
-    assumed_torque: float
-    delay: float
-    clock_drift: float
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class AnalysisSettings:
     """The parameters ``analysis.*``."""
 

@@ -16,8 +16,8 @@ from .groups import (
     HistorySettings,
     InputSettings,
     LoadSettings,
-    Uncertainty,
 )
+from .uncertainty import Uncertainty
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -64,7 +64,7 @@ class JointSettings:
             serial=str(values["reducer.serial"]),
             transmission_error=float(values["reducer.transmission_error"]),  # type: ignore[arg-type]
             dynamics=fill_group(values, "dynamics", Dynamics),
-            uncertainty=_uncertainty(values),
+            uncertainty=Uncertainty.of(values),
             input=fill_group(values, "input", InputSettings),
             load=fill_group(values, "load", LoadSettings),
             analysis=fill_group(values, "analysis", AnalysisSettings),
@@ -90,18 +90,3 @@ class JointSettings:
         if torque is not None and not self.sensorless:
             needed.append(replace(torque, topic=self.load.topic or torque.topic))
         return {source.quantity: source for source in needed}
-
-
-def _uncertainty(values: Mapping[str, Value]) -> Uncertainty:
-    def number(name: str) -> float:
-        return float(values[name])  # type: ignore[arg-type]
-
-    return Uncertainty(
-        natural_frequency=number("dynamics.natural_frequency_uncertainty"),
-        damping=number("dynamics.damping_uncertainty"),
-        inertia=number("dynamics.inertia_uncertainty"),
-        measured_torque=number("load.torque_uncertainty"),
-        assumed_torque=number("load.assumed_uncertainty"),
-        delay=number("input.delay_uncertainty"),
-        clock_drift=1e-6 * number("input.clock_drift"),
-    )
