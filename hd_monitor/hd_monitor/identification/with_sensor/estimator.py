@@ -151,7 +151,8 @@ class Estimator:
         if state.seconds <= WINDOW and left.residual.inflation(state.coverage.span) > POOR:
             state, fit = turn_sensor(context, state, fit)
             left = context.unexplained(state, fit)
-        if left.residual.inflation(state.coverage.span) > POOR:
+        # An arm's inertia moves from the first move on: what changes later is a change of the reducer
+        if state.seconds <= WINDOW and left.residual.inflation(state.coverage.span) > POOR:
             state, fit = let_inertia_wander(context, state, fit)
             left = context.unexplained(state, fit)
         return state, fit, left

@@ -79,7 +79,7 @@ def _too_weak(context: Context, state: State, fit: Fit) -> Limitation | None:
 
     So near the noise the likelihood is not the Gaussian that decisions are read from.
     """
-    chance = state.inflation * float(chdtri(context.unknowns.size, _CHANCE))
+    chance = float(chdtri(context.unknowns.size, _CHANCE))
     if state.heard < _STARTS * chance:
         return blocker(LimitationCode.LINES_ABSENT)
     if state.heard < _GAUSSIAN * chance:
