@@ -125,7 +125,6 @@ class Monitor:
 
     def silence(self, now: int) -> Assessment:
         """Say that nothing came for ``input.timeout`` until `now` [ns] by the caller's clock; the evidence is kept."""
-        self._evidence.finish()
         return self._pack(now, nothing_received(self._presence.absent, self._presence.timeout), None)
 
     def change_limits(self, settings: JointSettings) -> None:

@@ -163,7 +163,7 @@ class SegmentBuilder:
     keep_tones: bool = False
     bandwidth: float = 0.0
 
-    def build(self, records: Sequence[Record], torque: float | None) -> Segment:
+    def build(self, records: Sequence[Record], torque: float | None, origin: float = 0.0) -> Segment:
         """Join successive records, each of which continues the one before it.
 
         Parameters
@@ -171,6 +171,8 @@ class SegmentBuilder:
         records : sequence of Record
         torque : float or None
             Torque [N·m] to be used instead of the records'; None for the records'.
+        origin : float
+            Time [s] from which that of the segment counts.
 
         Raises
         ------
@@ -197,7 +199,7 @@ class SegmentBuilder:
             )
         own = own_acceleration(speed, step)
         known = np.full(angle.size, torque) if torque is not None else regress_torque(measured, angle, speed, own, step)
-        motion = Motion(angle, speed, own, known, step, record.start + period * signal.first)
+        motion = Motion(angle, speed, own, known, step, record.start - origin + period * signal.first)
         at_steps, at_gauss = paths_along(motion, self.reducer, self.harmonics, self.load_orders, steps)
         return Segment(
             period=step,

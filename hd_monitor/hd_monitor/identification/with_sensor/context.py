@@ -93,7 +93,9 @@ class Context:
             if torque is None:
                 torque = self._find_nominal(records)
                 setup = replace(setup, nominal_torque=torque)
-        segment = self.builder.build(records, torque)
+        if setup.origin is None:
+            setup = replace(setup, origin=records[0].start)
+        segment = self.builder.build(records, torque, origin=setup.origin or 0.0)
         if not setup.reference_torque:
             level = float(np.sqrt(np.mean(segment.at_steps.torque**2)))
             kept_from_zero = max(level, 0.1 * abs(self.given_torque), 1e-9 * self.given.stiffness)

@@ -33,6 +33,8 @@ class Setup:
         Torque [N·m] used in place of an unknown one; None as long as the torque is known.
     measured : bool
         Whether all torque so far was measured.
+    origin : float or None
+        Time [s] of the first segment, from which the drift of the clocks counts; None before it.
     reference_torque : float
         Torque [N·m] in whose unit load fluctuations are expressed; 0 before the first segment.
     mounting : float
@@ -43,6 +45,7 @@ class Setup:
 
     nominal_torque: float | None = None
     measured: bool = True
+    origin: float | None = None
     reference_torque: float = 0.0
     mounting: float = 1.0
     wanders: bool = False
