@@ -103,17 +103,18 @@ class Monitor:
         return [self._assess(period) for period in self._intake.complete()]
 
     def finish(self) -> Assessment | None:
-        """Take a last look at all data and return the final assessment; None if there is nothing to assess.
+        """Return the final assessment, None if there is nothing to assess: what a node would show, but for two things.
 
-        What is left is assessed although its period, or the segment of motion it is part of, is not complete. The
-        evidence will not change any more, so its verdict needs no further one to confirm it.
+        The evidence will not change any more, so no further verdict is needed to confirm the last one; and where
+        nothing could be identified, what is left is used although its period, or segment of motion, is not complete.
         """
         self.advance()
-        for period in self._intake.rest():
-            newest = [int(samples.stamps.max()) for samples in period.samples.values() if samples.stamps.size]
-            if self.latest is None or len(newest) == len(period.samples):  # one input alone adds nothing
-                self._assess(period, now=max(newest, default=period.start))  # what follows the data is no silence
-        self._evidence.finish()
+        if self._evidence.identification is None:
+            for period in self._intake.rest():
+                newest = [int(samples.stamps.max()) for samples in period.samples.values() if samples.stamps.size]
+                if self.latest is None or len(newest) == len(period.samples):  # one input alone adds nothing
+                    self._assess(period, now=max(newest, default=period.start))  # what follows the data is no silence
+            self._evidence.finish()
         if self.latest is None or self.latest.verdict.fault_code in (FaultCode.INPUT_LOST, FaultCode.INPUT_INVALID):
             return self.latest
         verdict = self.latest.verdict

@@ -97,8 +97,9 @@ class Stopwatch:
 
 
 STOPWATCH = Stopwatch()
-for _owner, _name in ((ToothWatch, "after"), (ToothWatch, "look"), (sensorless, "rank")):
-    setattr(_owner, _name, STOPWATCH.timed(getattr(_owner, _name)))
+for _owner, _names in ((ToothWatch, ("after", "look")), (sensorless, ("question_teeth", "question_motor"))):
+    for _name in _names:
+        setattr(_owner, _name, STOPWATCH.timed(getattr(_owner, _name)))
 
 
 def judge_case(number: int, seed: int, shifts: Sequence[int] = SHIFTS) -> list[Outcome]:
