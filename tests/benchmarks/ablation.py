@@ -23,7 +23,8 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
-from tests.simulated.cases import Case, random_case, simulate
+from tests.simulated.cases import Case, simulate
+from tests.simulated.random_cases import random_case
 
 from hd_monitor.acquisition.record import Record
 from hd_monitor.arrays import BoolArray, FloatArray

@@ -2,7 +2,7 @@
 
     python tests/studies/calibration.py [--runs 500] [--seed 777000] [--jobs 2]
 
-*Coverage*: on random cases (see tests/simulated/cases.py; white noise, no sensor faults), how often do the 95 %
+*Coverage*: on random cases (see tests/simulated/random_cases.py; white noise, no sensor faults), how often do the 95 %
 intervals, index ± 1.96 standard deviations, hold the truth? Near 0 an interval is meant to hold more.
 
 *Efficiency*: Table 1 at a constant speed with separable lines, over many noises: the variance of the estimates over
@@ -34,7 +34,8 @@ from hd_monitor.settings import JointSettings
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 from tests.oracle import table_1
-from tests.simulated.cases import Case, random_case, simulate
+from tests.simulated.cases import Case, simulate
+from tests.simulated.random_cases import random_case
 from tests.studies import cramer_rao
 
 CLEAN = {"colour": "white", "spikes": 0.0, "lost": 0.0}

@@ -34,8 +34,9 @@ from hd_monitor.reducer import LinePair
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
-from tests.simulated.cases import MOTIONS, random_case, simulate
+from tests.simulated.cases import MOTIONS, simulate
 from tests.simulated.joints import random_joint, simulate_joint
+from tests.simulated.random_cases import random_case
 
 SHIFTS = (0, -40, -20, -2, 2, 20, 40)
 """Teeth given minus those in the case, with a sensor."""

@@ -2,8 +2,8 @@
 
     python tests/studies/verdicts.py [--cases 300] [--seed 2021] [--jobs 2] [--verbose]
 
-Every case is another reducer with another defect, motion, load, noise and sensor fault (see tests/simulated/cases.py):
-the confounders of the field. The rules:
+Every case is another reducer with another defect, motion, load, noise and sensor fault (see
+tests/simulated/random_cases.py): the confounders of the field. The rules:
 
 * ``higher peak``: the paper's, the higher of the two peaks in the zoom spectrum around the strongest pair;
 * ``linear fit``: least squares of what the first order explains (see plain_rules.py for both);
@@ -32,7 +32,8 @@ from hd_monitor.reducer import LinePair
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
-from tests.simulated.cases import Case, random_case, simulate
+from tests.simulated.cases import Case, simulate
+from tests.simulated.random_cases import random_case
 from tests.studies.plain_rules import higher_peak, linear_fit
 
 RULES = ("higher peak", "linear fit", "hd_monitor")

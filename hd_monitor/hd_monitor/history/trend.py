@@ -7,13 +7,11 @@ import numpy as np
 from scipy.stats import t as t_distribution
 
 from ..arrays import FloatArray, IntArray
+from ..change import SIGNIFICANT, Change
 from .series import Series
 
-SIGNIFICANT = 0.01
-"""Probability below which a change or a slope is not an accident of the noise."""
-
 STEP_SIGNIFICANT = 0.001
-"""The same for a step, which is looked for at every place."""
+"""Probability below which a step, looked for at every place, is not an accident of the noise."""
 
 FEWEST = 4
 """Values from which a slope, or a step, is looked for."""
@@ -23,31 +21,6 @@ BANDS = 1.96
 
 _DAY = 86_400.0
 _BETTER = 10.0  # by which a step must lower the sum of squares, in variances: odds of e^5 over a steady change
-
-
-class Change(NamedTuple):
-    """The newest value against the baseline, in the reading's unit."""
-
-    before: float
-    before_std: float
-    after: float
-    after_std: float
-    p_value: float
-
-    @property
-    def change(self) -> float:
-        """After less before."""
-        return self.after - self.before
-
-    @property
-    def std(self) -> float:
-        """Standard deviation of the change."""
-        return math.hypot(self.before_std, self.after_std)
-
-    @property
-    def significant(self) -> bool:
-        """Whether noise alone would hardly make such a difference."""
-        return self.p_value < SIGNIFICANT
 
 
 class Slope(NamedTuple):

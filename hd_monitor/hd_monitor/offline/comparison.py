@@ -5,15 +5,14 @@ from collections.abc import Mapping, Sequence
 from operator import itemgetter
 from typing import Any, NamedTuple
 
+from ..change import Change
 from .errors import BagError
 from .line_changes import (
-    SIGNIFICANT,
+    NOTHING,
     SPLINES,
     CurveChange,
-    LineChange,
-    RatioChange,
-    as_entry,
-    chance_of,
+    LineChanges,
+    change_between,
     curve_change,
     describe_curve,
     describe_lines,
@@ -29,41 +28,10 @@ SMALL = 0.002
 _TOO_LARGE = 1e100
 """Numbers from here on, infinity and NaN are damage: their ratios and differences mean nothing."""
 
-_TOO_SMALL = 1e-100
-
 _BIN_WIDTH = 100.0  # rpm, where a result does not say
 
 _GEOMETRY = ("reducer.flexspline_teeth", "reducer.circular_spline_teeth", "reducer.mount")
 _BASIS = ("dynamics.natural_frequency", "dynamics.damping_ratio", "input.source", "load.torque", "load.source")
-
-
-class IndexChange(NamedTuple):
-    """An index before and after, and the probability of such a difference without a change.
-
-    Fractions of the stiffness; shares whose squares add up to one where the result is relative.
-    """
-
-    spline: str
-    before: float
-    before_std: float
-    after: float
-    after_std: float
-    p_value: float
-
-    @property
-    def change(self) -> float:
-        """After less before."""
-        return self.after - self.before
-
-    @property
-    def change_std(self) -> float:
-        """Standard deviation of the change."""
-        return math.hypot(self.before_std, self.after_std)
-
-    @property
-    def significant(self) -> bool:
-        """Whether noise alone would hardly make such a difference."""
-        return self.p_value < SIGNIFICANT
 
 
 class Peak(NamedTuple):
@@ -79,13 +47,17 @@ class JointChange(NamedTuple):
     joint: str
     before: Mapping[str, Any]
     after: Mapping[str, Any]
-    indexes: tuple[IndexChange, ...]
-    """Empty where the indexes cannot be compared, as relative ones with absolute ones."""
+    indexes: Mapping[str, Change]
+    """Fractions of the stiffness by spline, or shares whose squares add up to one where the result is relative.
+
+    Empty where they cannot be compared, as relative ones with absolute ones.
+    """
     relative: bool
     """Whether the indexes are shares."""
-    lines: tuple[LineChange, ...]
+    lines: LineChanges
     """Empty where the two were taken from different signals."""
-    ratio: RatioChange | None
+    ratio: Change | None
+    """Of the first pair's lines, flexspline over circular spline."""
     curve: CurveChange | None
     peaks: tuple[Peak, Peak] | None
     """Highest points at the speeds that both curves have, before and after; None if they have none in common."""
@@ -119,13 +91,10 @@ def as_dict(changes: Sequence[JointChange], before: str, after: str) -> dict[str
             "joint": change.joint,
             "before": change.before["verdict"],
             "after": change.after["verdict"],
-            "indexes": [
-                i._asdict() | {"change": i.change, "change_std": i.change_std, "significant": i.significant}
-                for i in change.indexes
-            ],
+            "indexes": [{"spline": spline} | index.as_dict() for spline, index in change.indexes.items()],
             "relative": change.relative,
-            "lines": [as_entry(line) for line in change.lines],
-            "ratio": change.ratio and as_entry(change.ratio),
+            "lines": [{"k": k, "spline": spline} | line.as_dict() for (k, spline), line in change.lines.items()],
+            "ratio": change.ratio and change.ratio.as_dict(),
             "rms_change": change.curve and change.curve._asdict(),
             "peaks": change.peaks and [peak._asdict() for peak in change.peaks],
             "rms_curve_before": change.before["rms_curve"],
@@ -167,7 +136,7 @@ def _is_whole(entry: Mapping[str, Any]) -> bool:
     width = given.get("analysis.rms_bin_width", _BIN_WIDTH)
     return (
         isinstance(width, (int, float))
-        and width > _TOO_SMALL
+        and width > NOTHING
         and all(isinstance(word, str) for word in words)
         and all(isinstance(number, (int, float)) and abs(number) < _TOO_LARGE for number in numbers)
     )
@@ -183,16 +152,16 @@ def _joint_change(before: Mapping[str, Any], after: Mapping[str, Any]) -> JointC
     sentences = [_verdict_sentence(before["verdict"], after["verdict"])]
     kinds = {bool(entry.get("relative")) for entry in (before, after)}
     relative = True in kinds
-    indexes = _index_changes(before["verdict"], after["verdict"]) if len(kinds) == 1 else ()
+    indexes = _index_changes(before["verdict"], after["verdict"]) if len(kinds) == 1 else {}
     if relative:
         sentences.append(
             "The indexes are relative, since torque or transfer function are unknown: compare the lines and their "
             "ratio."
         )
     else:
-        sentences += [_index_sentence(change) for change in indexes]
+        sentences += [_index_sentence(_name(spline), change) for spline, change in indexes.items()]
     same_signal = given.get("input.source") == given_now.get("input.source")
-    lines = line_changes(before.get("lines", ()), after.get("lines", ())) if same_signal else ()
+    lines = line_changes(before.get("lines", ()), after.get("lines", ())) if same_signal else {}
     ratio = ratio_change(lines)
     sentences += describe_lines(lines, ratio)
     if curve := curve_change(
@@ -220,16 +189,9 @@ def _joint_change(before: Mapping[str, Any], after: Mapping[str, Any]) -> JointC
     )
 
 
-def _index_changes(before: Mapping[str, Any], after: Mapping[str, Any]) -> tuple[IndexChange, ...]:
-    changes = []
-    for spline in SPLINES:
-        values = [entry[f"{spline}_index{suffix}"] for entry in (before, after) for suffix in ("", "_std")]
-        if any(value is None for value in values):
-            continue
-        old, old_std, new, new_std = (float(value) for value in values)
-        p_value = chance_of(new - old, math.hypot(old_std, new_std))
-        changes.append(IndexChange(spline, old, old_std, new, new_std, p_value))
-    return tuple(changes)
+def _index_changes(before: Mapping[str, Any], after: Mapping[str, Any]) -> dict[str, Change]:
+    found = {spline: change_between(before, after, f"{spline}_index") for spline in SPLINES}
+    return {spline: change for spline, change in found.items() if change is not None}
 
 
 def _peaks(before: Sequence[Mapping[str, Any]], after: Sequence[Mapping[str, Any]]) -> tuple[Peak, Peak] | None:
@@ -266,8 +228,7 @@ def _verdict_sentence(before: Mapping[str, Any], after: Mapping[str, Any]) -> st
     return f"The verdict went from {old}, {before['level_name']}, to {new}, {after['level_name']}."
 
 
-def _index_sentence(change: IndexChange) -> str:
-    name = _name(change.spline)
+def _index_sentence(name: str, change: Change) -> str:
     old = percent_with_std(change.before, change.before_std)
     new = percent_with_std(change.after, change.after_std)
     if not change.significant:

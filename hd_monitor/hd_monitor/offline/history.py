@@ -8,11 +8,12 @@ from datetime import UTC, datetime
 from typing import Any
 
 from .. import __version__
+from ..change import Change
 from ..diagnosis.verdict import Verdict
 from ..history.entry import Entry
 from ..history.ledger import Ledger, Reducer
 from ..history.series import Series, series_of
-from ..history.trend import Change, Slope, Step, change_of, slope_of, step_of
+from ..history.trend import Slope, Step, change_of, slope_of, step_of
 from .errors import BagError
 from .result import plain
 
@@ -142,7 +143,7 @@ def _reading(reading: Reading) -> dict[str, Any]:
             {"time": time, "revolutions": turns, "value": value, "std": std, "is_baseline": base}
             for (time, turns, value, std), base in zip(columns, series.is_baseline.tolist(), strict=True)
         ],
-        "change": change and change._asdict() | {"change": change.change, "change_std": change.std},
+        "change": change and change.as_dict(),
         "slope": slope and slope._asdict(),
         "step": step and step._asdict(),
     }

@@ -5,40 +5,20 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.stats import norm
 from scipy.stats import t as t_distribution
 
-SIGNIFICANT = 0.01
-"""Probability below which a change is not an accident of the noise."""
+from ..change import SIGNIFICANT, Change, chance_of
 
 SPLINES = ("circular_spline", "flexspline")
 
 FEWEST_SPEEDS = 3
 """Speeds in common from which the curves' scatter says how sure their ratio is."""
 
-_NOTHING = 1e-100  # below it ratios mean nothing
+NOTHING = 1e-100
+"""Size below which a ratio to it means nothing."""
 
-
-class LineChange(NamedTuple):
-    """A line before and after, in the signal's unit."""
-
-    k: int
-    spline: str
-    before: float
-    before_std: float
-    after: float
-    after_std: float
-    p_value: float
-
-
-class RatioChange(NamedTuple):
-    """The first pair's ratio, flexspline over circular spline, before and after."""
-
-    before: float
-    before_std: float
-    after: float
-    after_std: float
-    p_value: float
+LineChanges = Mapping[tuple[int, str], Change]
+"""The changes of lines in the signal's unit, by the pair's number k and the spline."""
 
 
 class CurveChange(NamedTuple):
@@ -50,53 +30,41 @@ class CurveChange(NamedTuple):
     p_value: float
 
 
-def chance_of(change: float, std: float) -> float:
-    """Return the probability of such a difference without a change."""
-    return float(2.0 * norm.sf(abs(change) / std)) if std > 0.0 else float(change == 0.0)
-
-
-def as_entry(change: LineChange | RatioChange) -> dict[str, Any]:
-    """Write a change as plain data."""
-    return change._asdict() | {
-        "change": change.after - change.before,
-        "change_std": math.hypot(change.before_std, change.after_std),
-        "significant": change.p_value < SIGNIFICANT,
-    }
-
-
-def line_changes(before: Sequence[Mapping[str, Any]], after: Sequence[Mapping[str, Any]]) -> tuple[LineChange, ...]:
+def line_changes(before: Sequence[Mapping[str, Any]], after: Sequence[Mapping[str, Any]]) -> LineChanges:
     """Compare the lines that both results have with their standard deviations."""
     old, new = ({line["k"]: line for line in lines} for lines in (before, after))
-    return tuple(change for k in sorted(old.keys() & new.keys()) for change in _pair(k, old[k], new[k]))
+    found = {
+        (k, spline): change_between(old[k], new[k], spline)
+        for k in sorted(old.keys() & new.keys())
+        for spline in SPLINES
+    }
+    return {place: change for place, change in found.items() if change is not None}
 
 
-def _pair(k: int, before: Mapping[str, Any], after: Mapping[str, Any]) -> Iterator[LineChange]:
-    for spline in SPLINES:
-        values = [line.get(name) for line in (before, after) for name in (spline, f"{spline}_std")]
-        known = [float(value) for value in values if value is not None]
-        if len(known) == len(values):
-            old, old_std, new, new_std = known
-            yield LineChange(k, spline, old, old_std, new, new_std, chance_of(new - old, math.hypot(old_std, new_std)))
+def change_between(before: Mapping[str, Any], after: Mapping[str, Any], name: str) -> Change | None:
+    """Compare a value that is written with its standard deviation, ``name`` and ``name_std``; None where one lacks."""
+    values = [side.get(key) for side in (before, after) for key in (name, f"{name}_std")]
+    known = [float(value) for value in values if value is not None]
+    return Change.between(*known) if len(known) == len(values) else None
 
 
-def ratio_change(lines: Sequence[LineChange]) -> RatioChange | None:
-    """Compare the ratio of the first pair's lines, by its logarithm; None without all four of them."""
-    pair = {change.spline: change for change in lines if change.k == 1}
-    if len(pair) < 2 or not all(min(change.before, change.after) > _NOTHING for change in pair.values()):
+def ratio_change(lines: LineChanges) -> Change | None:
+    """Compare the first pair's ratio, flexspline over circular spline, by its logarithm; None without both lines."""
+    cs, fs = (lines.get((1, spline)) for spline in SPLINES)
+    if cs is None or fs is None or min(cs.before, cs.after, fs.before, fs.after) <= NOTHING:
         return None
-    cs, fs = pair["circular_spline"], pair["flexspline"]
     old, new = fs.before / cs.before, fs.after / cs.after
     old_std = math.hypot(fs.before_std / fs.before, cs.before_std / cs.before)
     new_std = math.hypot(fs.after_std / fs.after, cs.after_std / cs.after)
     chance = chance_of(math.log(new / old), math.hypot(old_std, new_std))
-    return RatioChange(old, old * old_std, new, new * new_std, chance)
+    return Change(old, old * old_std, new, new * new_std, chance)
 
 
 def curve_change(
     before: Sequence[Mapping[str, Any]], after: Sequence[Mapping[str, Any]], width: float
 ) -> CurveChange | None:
     """Compare two RMS curves speed by speed; None where they have too few bins of `width` [rpm] in common."""
-    old, new = ({round(b["rpm"] / width): b["rms"] for b in curve if b["rms"] > _NOTHING} for curve in (before, after))
+    old, new = ({round(b["rpm"] / width): b["rms"] for b in curve if b["rms"] > NOTHING} for curve in (before, after))
     common = sorted(old.keys() & new.keys())
     if len(common) < FEWEST_SPEEDS:
         return None
@@ -106,18 +74,18 @@ def curve_change(
     return CurveChange(len(common), math.exp(mean), math.exp(mean) * std, chance)
 
 
-def describe_lines(lines: Sequence[LineChange], ratio: RatioChange | None) -> Iterator[str]:
+def describe_lines(lines: LineChanges, ratio: Change | None) -> Iterator[str]:
     """Say which lines changed significantly, and how the first pair's ratio did."""
-    changed = [change for change in lines if change.p_value < SIGNIFICANT]
-    for change in changed:
+    changed = {place: change for place, change in lines.items() if change.significant}
+    for (k, spline), change in changed.items():
         verb = "grew" if change.after > change.before else "fell"
-        by = f" by {100.0 * abs(change.after / change.before - 1.0):.0f} %" if change.before > _NOTHING else ""
+        by = f" by {100.0 * abs(change.after / change.before - 1.0):.0f} %" if change.before > NOTHING else ""
         old, new = f"{change.before:.3g} ± {change.before_std:.1g}", f"{change.after:.3g} ± {change.after_std:.1g}"
-        name = f"{change.spline.replace('_', ' ')}'s line k = {change.k}"
+        name = f"{spline.replace('_', ' ')}'s line k = {k}"
         yield f"The {name} {verb}{by}: {old} before, {new} after (p {_p(change.p_value)})."
     if lines and not changed:
         yield "No line changed significantly."
-    if ratio is not None and ratio.p_value < SIGNIFICANT:
+    if ratio is not None and ratio.significant:
         yield (
             f"The flexspline's first line went from {ratio.before:.3g} ± {ratio.before_std:.1g} to {ratio.after:.3g} ± "
             f"{ratio.after_std:.1g} times the circular spline's (p {_p(ratio.p_value)})."

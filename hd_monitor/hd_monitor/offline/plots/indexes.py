@@ -8,9 +8,9 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ...arrays import FloatArray
+from ...history.trend import BANDS
 from .style import CIRCULAR_SPLINE, ERROR_COLOUR, FLEXSPLINE, INK, WARN_COLOUR, legend_above, limits, new_figure
 
-_BANDS = 1.96
 _LEVELS = ("OK", "WARN", "ERROR")
 _LEVEL_COLOURS = ("#56B4E9", WARN_COLOUR, ERROR_COLOUR)
 _LEVEL_HATCHES = ("", "///", "xxx")
@@ -32,7 +32,7 @@ def indexes_plot(
         highest = 0.0 if relative else error
         for look, name in ((CIRCULAR_SPLINE, "circular_spline_index"), (FLEXSPLINE, "flexspline_index")):
             value, std = _numbers(timeline, name), _numbers(timeline, f"{name}_std")
-            low, high = 100 * np.maximum(value - _BANDS * std, 0.0), 100 * (value + _BANDS * std)
+            low, high = 100 * np.maximum(value - BANDS * std, 0.0), 100 * (value + BANDS * std)
             axes.fill_between(seconds, low, high, color=look.colour, alpha=0.2, linewidth=0)
             axes.plot(
                 seconds, 100 * value, look.line, color=look.colour, label=look.label, marker=look.marker,
