@@ -4,8 +4,8 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from scipy.linalg import norm
 
-from ..arrays import FloatArray
 from ..limitation import Limitation, LimitationCode, blocker
 from .record import JointSamples
 
@@ -48,21 +48,21 @@ def compare_motion(samples: JointSamples, *, minimum_speed: float, reduction: fl
     if (wrapped := np.abs(steps) > _WRAPPED).any():
         steps -= math.tau * np.rint(steps / math.tau) * wrapped
     moved, said = steps, 0.5 * (speed[1:] + speed[:-1]) * (times[1:] - times[:-1])
-    size_moved, size_said, apart = _size(moved), _size(said), _size(moved - said)
+    size_moved, size_said, apart = norm(moved), norm(said), norm(moved - said)
     if apart > SLIP * max(size_moved, size_said):
         # Between single messages quantisation and noise differ, too
         first = np.flatnonzero(np.diff(np.floor((times[1:] - times[0]) / WINDOW), prepend=-1.0))
         moved, said = np.add.reduceat(moved, first), np.add.reduceat(said, first)
-        size_moved, size_said, apart = _size(moved), _size(said), _size(moved - said)
+        size_moved, size_said, apart = norm(moved), norm(said), norm(moved - said)
     larger = max(size_moved, size_said)
     if larger < minimum_speed * float(times[-1] - times[0]) / math.sqrt(moved.size):
         return MotionAgreement(False, None)
     difference = apart / larger
     if difference <= SLIP:
         return MotionAgreement(True, None)
-    product = float(moved @ said)
-    if abs(product) > _FOLLOWS * size_moved * size_said:
-        return MotionAgreement(True, _scaled(product / size_said**2, reduction))
+    correlation = float((moved / size_moved) @ (said / size_said)) if size_moved and size_said else 0.0
+    if abs(correlation) > _FOLLOWS:
+        return MotionAgreement(True, _scaled(correlation * (size_moved / size_said), reduction))
     if size_said < _STILL * size_moved and float(np.abs(speed).max()) > minimum_speed:
         found = blocker(LimitationCode.POSITION_JUMPS, jump_deg=math.degrees(float(np.abs(steps).max())))
     elif size_said < _STILL * size_moved:
@@ -72,11 +72,6 @@ def compare_motion(samples: JointSamples, *, minimum_speed: float, reduction: fl
     else:
         found = blocker(LimitationCode.MOTION_INCONSISTENT, difference_percent=100.0 * difference)
     return MotionAgreement(True, found)
-
-
-def _size(values: FloatArray) -> float:
-    """Return the Euclidean norm."""
-    return math.sqrt(float(values @ values))
 
 
 def _scaled(ratio: float, reduction: float) -> Limitation:

@@ -95,3 +95,14 @@ def test_the_mistake_is_named(factor, mistake, swing):
 )
 def test_other_contradictions_are_named(angle, speed, code):
     assert contradiction(angle, speed).code is code
+
+
+@pytest.mark.parametrize("wild", [1e300, -1e300])
+def test_numbers_whose_squares_overflow_are_compared(wild):
+    once = np.full(TIMES.size, 0.5)
+    once[500] = wild
+    with np.errstate(over="raise", invalid="raise"):
+        one, all_of_them = contradiction(0.5 * TIMES, once), contradiction(0.5 * TIMES, 0.5 * wild + 0.0 * TIMES)
+    assert one.code is LimitationCode.POSITION_STILL
+    assert all_of_them.code is LimitationCode.VELOCITY_SCALE
+    assert all_of_them.values["ratio"] == pytest.approx(1.0 / wild)
