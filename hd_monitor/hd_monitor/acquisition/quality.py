@@ -26,7 +26,7 @@ class Quality:
     lost: int = _count("lost samples", "samples missing in those holes")
     duplicates: int = _count("duplicates", "samples or blocks whose stamp or sequence number had come before; dropped")
     out_of_order: int = _count("out of order", "samples that came late but were sorted in, or dropped if too late")
-    not_finite: int = _count("not finite", "NaN or infinite values")
+    not_finite: int = _count("not finite", "NaN, infinite and absurdly large values")
     clipped: int = _count("clipped", "samples at the sensor's full scale")
     stuck: int = _count("stuck", "samples of a signal that did not change at all while the joint was turning")
     spikes: int = _count("spikes", "samples left out as outliers")

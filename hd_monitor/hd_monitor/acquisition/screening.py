@@ -14,6 +14,7 @@ Places = npt.NDArray[np.intp]
 _SPIKE = 8.0  # robust standard deviations of the curvature; a sine never exceeds 2
 _AROUND = 12  # samples on either side of a spike that show the level there
 _LONGEST_SPIKE = 3  # samples in a row; more are a disturbance, not a spike
+_LARGEST = 1e150  # any units: the square of a larger number, infinity and NaN mean nothing
 _STUCK_RUN = 32  # equal samples in a row: no sensor at rest is that quiet
 _CLIPPED_RUN = 3  # equal samples in a row at the extreme: a flat top
 _TRIALS = np.array([(n, first) for n in range(1, _LONGEST_SPIKE + 1) for first in range(-n, 2)])
@@ -32,7 +33,7 @@ class Screened(NamedTuple):
 
 
 def screen(values: FloatArray, *, full_scale: float = 0.0, turning: bool = True) -> Screened:
-    """Find values that are not finite, clipped, stuck or spikes.
+    """Find values that are not finite (or so large that their squares are not), clipped, stuck or spikes.
 
     Parameters
     ----------
@@ -44,7 +45,7 @@ def screen(values: FloatArray, *, full_scale: float = 0.0, turning: bool = True)
         Whether the joint turned: a standing one may well give a constant signal, a turning one never.
     """
     clean = np.array(values, dtype=np.float64)
-    finite = np.isfinite(clean)
+    finite = np.abs(clean) < _LARGEST
     not_finite = clean.size - int(np.count_nonzero(finite))
     if not_finite:
         clean[~finite] = np.nan

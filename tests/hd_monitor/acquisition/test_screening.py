@@ -96,10 +96,10 @@ def test_spikes_beside_a_missing_sample_are_left_out(strokes: np.ndarray) -> Non
 
 def test_not_finite_values_are_left_out() -> None:
     values = np.sin(2 * np.pi * 56.0 * TIMES)
-    values[[3, 500]] = np.nan, np.inf
+    values[[3, 500, 800]] = np.nan, np.inf, -1e300  # the last has no finite square
     screened = screen(values)
-    assert screened.not_finite == 2
-    assert np.flatnonzero(np.isnan(screened.values)).tolist() == [3, 500]
+    assert screened.not_finite == 3
+    assert np.flatnonzero(np.isnan(screened.values)).tolist() == [3, 500, 800]
 
 
 @pytest.mark.parametrize("full_scale", [0.0, 0.8])
