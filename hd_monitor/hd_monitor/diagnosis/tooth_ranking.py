@@ -59,6 +59,10 @@ class ConcludedRanking(ToothPairRanking):
             why = (
                 f"the line at {best.lines[0]:g} is once per motor revolution of {double}, both of whose lines stand out"
             )
+        elif lower := self._lower():
+            why = f"their lines belong to the second group of {lower}, both of whose first lines stand out"
+        elif listed := self._listed():
+            why = f"catalogues list {listed} beside them, which with a tone in the other line's place look the same"
         elif best.lines_found < 2 or self.as_pair < MARGIN:
             why = f"a single line explains {travel} nearly as well, and may be something else's"
         elif math.isfinite(self.speed):
@@ -70,6 +74,20 @@ class ConcludedRanking(ToothPairRanking):
         else:
             return None
         return f"{best.teeth} teeth fit best but {why}: not conclusive"
+
+    def _lower(self) -> ToothPair | None:
+        """Pair whose second group, its lines' doubles and sum, holds both lines of the leader; None if none does."""
+        best = set(self.ranked[0].teeth)
+        full = (found.teeth for found in self.ranked if found.lines_found == 2)
+        return next((pair for pair in full if best <= {2.0 * pair[0], sum(pair), 2.0 * pair[1]}), None)
+
+    def _listed(self) -> ToothPair | None:
+        """Pair in catalogues that shares a line found with a leader that is in none; None if there is none."""
+        best = self.ranked[0]
+        if best.teeth.is_in_catalogue:
+            return None
+        listed = (found.teeth for found in self.ranked if found.teeth.is_in_catalogue)
+        return next((pair for pair in listed if set(pair) & set(best.teeth) & set(best.lines)), None)
 
     def _double(self) -> ToothPair | None:
         """Pair of about twice the teeth whose motor explains the leader's only line; None if there is none."""

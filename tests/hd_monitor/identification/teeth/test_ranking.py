@@ -154,3 +154,17 @@ def test_a_real_arm_s_teeth_never_come_out_wrong(ur10e, source):
     for file, joint in joints:
         ranking = rank_tooth_pairs(ur10e(file, joint), source=source)
         assert not ranking.conclusive or ranking.ranked[0].teeth == ToothPair(200, 202)
+
+
+def test_a_tone_beside_one_line_of_a_listed_pair_makes_no_other_pair():
+    ranking = rank_tooth_pairs(swinging({162: 0.2, 164: 0.2}))
+    assert ranking.ranked[0].teeth == ToothPair(162, 164)
+    assert not ranking.conclusive
+    assert "catalogues list 160/162" in ranking.statement
+
+
+def test_the_second_group_of_lines_makes_no_pair_of_its_own():
+    ranking = rank_tooth_pairs(swinging({120: 0.05, 122: 0.05, 240: 0.3, 242: 0.3}))
+    assert ranking.ranked[0].teeth == ToothPair(240, 242)
+    assert not ranking.conclusive
+    assert "second group of 120/122" in ranking.statement
