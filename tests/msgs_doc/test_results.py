@@ -11,6 +11,7 @@ import pytest
 
 from hd_monitor.cli.main import main
 from hd_monitor.identification.checks.something_else import SomethingElse
+from hd_monitor.identification.sensorless.torque_share import TorqueShare
 from hd_monitor.offline import comparison
 
 pytest.importorskip("rosbags")
@@ -60,6 +61,7 @@ def test_every_key_of_a_replay_is_documented(written: dict[str, Any]) -> None:
     assert sorted(joint["timeline"][-1]) == sorted([*keys_below("Verdict"), *keys_below("Each entry of timeline")])
     assert sorted(joint["lines"][0]) == sorted(keys_below("Each entry of lines"))
     assert {f.name for f in fields(SomethingElse)} == set(keys_below("Each entry of something_else"))
+    assert {f.name for f in fields(TorqueShare)} | {"reading"} == set(keys_below("Each entry of torque_shares"))
     assert sorted(joint["rms_curve"][0]) == sorted(keys_below("Each entry of rms_curve"))
     assert sorted(joint["quality"]) == sorted(keys_below("Quality"))
 

@@ -46,6 +46,8 @@ class JointCase:
     lag : float
         Delay of the current behind the position of the same message [s].
     seed : int
+    following : float
+        Part of the lines' power that follows the torque behind the friction, from 0 to 1.
     """
 
     reducer: Reducer
@@ -62,6 +64,7 @@ class JointCase:
     speed_dependence: float
     lag: float
     seed: int
+    following: float = 0.0
 
     def settings(self, **changes: object) -> JointSettings:
         """Return the parameters of a monitor for this joint."""
@@ -112,7 +115,8 @@ def simulate_joint(case: JointCase) -> JointSamples:
     angle, speed, acceleration = _motion(case, rng, true)
     forward = speed > 0.0
     current = 3.0 * np.sin(angle + 0.4) + 0.8 * np.sin(2.0 * angle + 1.3) + 1.5 * acceleration
-    current += np.tanh(speed / 0.02) * (1.5 + 0.7 * np.exp(-np.abs(speed) / 0.1)) + 0.8 * speed
+    torque = current / math.sqrt(float(np.mean(current**2)))
+    current = current + np.tanh(speed / 0.02) * (1.5 + 0.7 * np.exp(-np.abs(speed) / 0.1)) + 0.8 * speed
     reducer = case.reducer
     # The motor's ripple, once a turn of its shaft, and the lines.
     lag = angle - case.lag * speed
@@ -120,7 +124,9 @@ def simulate_joint(case: JointCase) -> JointSamples:
     growth = 1.0 + case.speed_dependence * (np.abs(speed) / case.top_speed - 0.5)
     for pair, side in zip(case.lines, (forward, ~forward), strict=True):
         for amplitude, order in zip(pair, reducer.output_orders, strict=True):
-            current += side * growth * amplitude * np.cos(order * lag + rng.uniform(0.0, math.tau))
+            size, phase = side * growth * amplitude, order * lag + rng.uniform(0.0, math.tau)
+            current += size * math.sqrt(1.0 - case.following) * np.cos(phase)
+            current += size * math.sqrt(case.following) * torque * np.cos(phase + 1.0)
     white = rng.standard_normal(true.size) * math.sqrt(1.0 - case.redness**2)
     current += case.noise * lfilter([1.0], [1.0, -case.redness], white)
     spikes = rng.random(true.size) < case.spikes

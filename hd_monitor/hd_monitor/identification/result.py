@@ -15,6 +15,7 @@ from ..reducer import LinePair
 from .checks.something_else import SomethingElse
 from .fit.gauss_newton import FitStatus
 from .sensorless.agreement import DirectionEvidence
+from .sensorless.torque_share import TorqueShare
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -76,6 +77,8 @@ class Identification:
         Why the newest fit ended; None where nothing is fitted step by step (sensorless).
     evidence : tuple of DirectionEvidence
         Lines of the newest motion direction by direction; none with a sensor.
+    torque_shares : tuple of TorqueShare
+        How much of the first pair's lines follows the torque; nothing with a sensor, or where the torque hardly swings.
     something_else : tuple of SomethingElse
         What the model leaves unexplained, the strongest first; nothing without a sensor.
     limitations : tuple of Limitation
@@ -108,6 +111,7 @@ class Identification:
     limitations: tuple[Limitation, ...] = ()
     beta_covariance: FloatArray | None = None
     evidence: tuple[DirectionEvidence, ...] = ()
+    torque_shares: tuple[TorqueShare, ...] = ()
     something_else: tuple[SomethingElse, ...] = ()
 
     @classmethod

@@ -121,6 +121,9 @@ class JointResult:
             "joint": plan.joint,
             "verdict": verdict_entry(last),
             "lines": line_entries(last.identification),
+            "torque_shares": [
+                asdict(row) | {"reading": row.reading} for row in getattr(last.identification, "torque_shares", ())
+            ],
             "something_else": [asdict(row) for row in getattr(last.identification, "something_else", ())],
             "rms_curve": [{"rpm": rpm, "rms": rms, "samples": samples} for rpm, rms, samples in last.rms_curve],
             "timeline": self.timeline,

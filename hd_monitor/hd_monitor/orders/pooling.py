@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..arrays import FloatArray
 from .joint_segment import JointSegment
 from .line_orders import LineOrders
 from .regression import LineFit, Products, pool, solve
@@ -54,6 +55,11 @@ class SegmentPool:
         self._coefficients = np.ones(1)
         self._learnt = 0.0
         self._seen = 0.0
+
+    @property
+    def coefficients(self) -> FloatArray:
+        """Of the whitening, as learnt last."""
+        return self._coefficients
 
     @property
     def segments(self) -> list[JointSegment]:

@@ -181,11 +181,14 @@ def test_several_recordings_are_one_history(tmp_path: Path) -> None:
     given = ("-p", "input.source:=joint_effort", "-p", "analysis.memory:=3600.0")
     alone = [result_of(Path(bag), tmp_path, *given)["joints"][0]["verdict"]["component"] for bag in bags]
     out = tmp_path / "together.json"
-    assert main(["replay", *bags, "--json", str(out), *given]) == 0
+    assert main(["replay", *bags, "--json", str(out), "--report", str(tmp_path), *given]) == 0
     together = json.loads(out.read_text(encoding="utf-8"))
     (joint,) = together["joints"]
     assert joint["verdict"]["component"] == "circular_spline"
     assert alone.count("undetermined") >= 4
+    assert [row["spline"] for row in joint["torque_shares"]] == ["circular_spline", "flexspline"]
+    assert all(0.0 <= row["low"] <= row["share"] <= row["high"] <= 1.0 for row in joint["torque_shares"])
+    assert "that follows the torque" in (tmp_path / "index.html").read_text(encoding="utf-8")
     assert together["bag"] == ", ".join(bags)
     stamps = [entry["stamp"] for entry in joint["timeline"]]
     assert stamps == sorted(set(stamps))

@@ -22,6 +22,7 @@ from ..teeth.candidates import Candidate, ToothPair, surroundings, with_neighbou
 from ..teeth.ranking import FitLines
 from .agreement import DirectionEvidence, by_direction, disagreements
 from .teeth import question_motor, question_teeth
+from .torque_share import TorqueShare, torque_shares
 
 COHERENT = 120.0
 """Motion [s] that is added up phase by phase; what is older, or of another recording, adds up as evidence: load, pose
@@ -81,6 +82,7 @@ class SensorlessIdentifier:
         reduction, (cs, fs) = settings.reducer.reduction, settings.reducer.output_orders
         motor = (reduction, 2.0 * reduction)
         orders = [LineOrders.of_pair(LinePair(cs, fs), k, motor) for k in range(1, settings.analysis.harmonics + 1)]
+        self._orders = orders[0]
         self._candidates = with_neighbours(settings.reducer)
         doubled = [Candidate(teeth=teeth) for teeth in ToothPair.of(settings.reducer).doubled()]
         minimum_speed = settings.analysis.minimum_speed * 2.0 * np.pi / 60.0 / reduction
@@ -193,7 +195,14 @@ class SensorlessIdentifier:
             ),
             load_fluctuation=math.nan,
             evidence=present,
+            torque_shares=self._torque_shares(),
         )
+
+    def _torque_shares(self) -> tuple[TorqueShare, ...]:
+        """How much of the first pair follows the torque, where the newest motion shows both."""
+        if self._settings.input.source != "joint_effort":
+            return ()
+        return torque_shares(self._pool.fits(0), self._orders, self._pool.coefficients)
 
     def _all_questions(self, present: Sequence[DirectionEvidence]) -> tuple[Limitation, ...]:
         """Questions about the teeth from the newest motion that raises any."""
