@@ -29,6 +29,10 @@ EXCLUDED = 14.0
 DISTINCT = 3.0
 """Standard deviations from which two solutions are two."""
 
+BETTER = 30.0
+"""Logarithm of the likelihood ratio by which one solution must beat another, on a few seconds of motion, to replace
+it."""
+
 _HALVINGS = 5
 
 
@@ -188,11 +192,11 @@ class Problem:
     def multistart(self, starts: Sequence[FloatArray], *, rounds: int) -> list[tuple["Problem", Fit]]:
         """Solve from the most promising of several starts; return the solutions, the best first, with their floors.
 
-        What a start promises is its cost after one step, by the quadratic model at the start, with the load as the
-        start has it: only then do the stiffness unknowns mean anything to the load. A varying stiffness and a
-        transmission error resemble each other, and the way from one to the other is long and bent: so the step is
-        also taken with either alone. While the residual is still large the floor is assumed white, otherwise
-        the lines not explained yet would pass for noise.
+        Left out are those that the best one excludes by far. What a start promises is its cost after one step, by the
+        quadratic model at the start, with the load as the start has it: only then do the stiffness unknowns mean
+        anything to the load. A varying stiffness and a transmission error resemble each other, and the way from one to
+        the other is long and bent: so the step is also taken with either alone. While the residual is still large the
+        floor is assumed white, otherwise the lines not explained yet would pass for noise.
         """
         u = self.predictor.unknowns
         kinds = [u.mask(u.load)]
@@ -203,7 +207,8 @@ class Problem:
         for held in kinds:
             _, floor, values = min((self._promise(fit, self.active & ~held) for fit in fits), key=lambda p: p[0])
             final.append(replace(self, floor=floor)._priced(values, rounds))
-        return [(problem, fit) for _, problem, fit in sorted(final, key=lambda t: t[0])]
+        final.sort(key=lambda t: t[0])
+        return [(problem, fit) for price, problem, fit in final if price < final[0][0] + 2.0 * BETTER]
 
     def contend(self, starts: Sequence[FloatArray], *, rounds: int) -> tuple[Fit, FloatArray | None]:
         """Solve from several starts; return the best solution, and the values of another one that is not excluded."""
@@ -223,7 +228,7 @@ class Problem:
         step[active] = np.linalg.lstsq(information[place], score[active], rcond=1e-13)[0]
         bounds = self.predictor.unknowns.bounds()
         values = np.clip(fit.values + step * self._room(fit.values, step), -bounds, bounds)
-        cost = max(fit.equations.moved(values - fit.values).cost, 1e-12 * fit.equations.cost)
+        cost = fit.equations.moved(values - fit.values).cost
         freedom = fit.equations.freedom
         price = freedom * math.log(self.floor.mean * cost) + self.prior.cost(values)
         return price, NoiseFloor.white(self.floor.mean * cost / freedom), values

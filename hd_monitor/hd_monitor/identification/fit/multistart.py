@@ -9,7 +9,7 @@ import numpy as np
 
 from ...arrays import FloatArray
 from ..segment.segment import Segment
-from .gauss_newton import Fit, Problem
+from .gauss_newton import BETTER, Fit, Problem
 from .noise import NoiseFloor
 from .unknowns import Unknowns
 
@@ -24,9 +24,6 @@ DELAY_STEP = 3e-3
 
 NEWEST = 3.0
 """Motion [s] of the newest segments on which other solutions are tried."""
-
-BETTER = 30.0
-"""Logarithm of the likelihood ratio by which another solution must beat the present one on them to be followed."""
 
 
 def newest_segments(segments: Sequence[Segment]) -> list[Segment]:

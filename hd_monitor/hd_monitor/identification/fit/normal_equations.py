@@ -37,7 +37,8 @@ class NormalEquations:
         """Return the same quadratic model about the point that `step` leads to."""
         change = self.information @ step
         cost = self.cost - 2.0 * float(self.score @ step) + float(step @ change)
-        return replace(self, score=self.score - change, cost=cost)
+        # Rounding may take a cost that all but vanishes below zero
+        return replace(self, score=self.score - change, cost=max(cost, 1e-12 * self.cost))
 
     def __add__(self, other: "NormalEquations") -> "NormalEquations":
         """Pool what is known about the same point from two sources."""
