@@ -140,7 +140,10 @@ class Problem:
 
     def solve(self, start: FloatArray, *, rounds: int) -> Fit:
         """Take Gauss-Newton steps from `start`, at most `rounds`."""
-        fit = self._descend(self.at(start), rounds)
+        return self._solved(self.at(start), rounds)
+
+    def _solved(self, fit: Fit, rounds: int) -> Fit:
+        fit = self._descend(fit, rounds)
         on_bound = self.active & (np.abs(fit.values) >= self.predictor.unknowns.bounds())
         return replace(fit, status=FitStatus.ON_BOUND) if on_bound.any() else fit
 
@@ -211,10 +214,19 @@ class Problem:
         return [(problem, fit) for price, problem, fit in final if price < final[0][0] + 2.0 * BETTER]
 
     def contend(self, starts: Sequence[FloatArray], *, rounds: int) -> tuple[Fit, FloatArray | None]:
-        """Solve from several starts; return the best solution, and the values of another one that is not excluded."""
-        first, *others = sorted((self.solve(start, rounds=rounds) for start in starts), key=lambda fit: fit.cost)
+        """Solve from several starts; return the best solution, and the values of another one that is not excluded.
+
+        A start whose quadratic model does not come near the best solution so far is not followed.
+        """
+        best, *others = starts
+        found = [self.solve(best, rounds=rounds)]
+        for start in others:
+            fit = self.at(start)
+            if fit.cost - fit.step_size**2 < found[0].cost + EXCLUDED:
+                found = sorted([*found, self._solved(fit, rounds)], key=lambda fit: fit.cost)
+        first = found[0]
         information = first.equations.information + self.prior.matrix
-        for other in others:
+        for other in found[1:]:
             apart = other.values - first.values
             if other.cost - first.cost < EXCLUDED and float(apart @ information @ apart) > DISTINCT**2:
                 return first, other.values

@@ -128,7 +128,8 @@ class Estimator:
         change = fit.values - state.values
         grown = state.seconds >= _GROWN * state.schedule.restarted
         if state.seconds <= WINDOW and (grown or float(change @ state.information.matrix @ change) > _MOVED**2):
-            starts = [fit.values] if state.rival is None else [fit.values, state.rival]
+            # In noise a wrong solution leaves no misfit: what was given is the likeliest to be right
+            starts = [fit.values, context.unknowns.zero(), *([] if state.rival is None else [state.rival])]
             state = state.restarted()
             return settle(context.problem_of_all(state), state, starts)
         return state, fit

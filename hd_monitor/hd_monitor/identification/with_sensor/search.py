@@ -51,12 +51,14 @@ def look_elsewhere(context: Context, state: State, fit: Fit | None) -> tuple[Sta
 
 
 def restart(context: Context, state: State, floor: NoiseFloor, starts: Sequence[FloatArray]) -> tuple[State, Fit]:
-    """Fit all segments kept from several starts, and forget what was learnt from them before."""
+    """Fit all segments kept from several starts, the best first, and forget what was learnt from them before.
+
+    A few rounds with a white floor come first: lines not explained yet would pass for coloured noise.
+    """
     state = state.restarted()
     problem = context.problem_of_all(state)
-    fits = [replace(problem, floor=floor).solve(start, rounds=_FEWEST) for start in starts]
-    best = min(fits, key=lambda fit: fit.cost)
-    return settle(replace(problem, floor=best.floor), state, [fit.values for fit in fits])
+    fit = replace(problem, floor=floor).solve(starts[0], rounds=_FEWEST)
+    return settle(replace(problem, floor=fit.floor), state, [fit.values, *starts[1:]])
 
 
 def settle(problem: Problem, state: State, starts: Sequence[FloatArray]) -> tuple[State, Fit]:
