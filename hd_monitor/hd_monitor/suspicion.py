@@ -1,7 +1,7 @@
 """Looks for the cause in the inputs where the model does not explain them, so that no innocent parameter is blamed."""
 
 from collections import deque
-from collections.abc import Sequence, Set
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -17,7 +17,6 @@ from .settings import JointSettings
 RECENT = 16.0
 """Time [s] that is looked at."""
 
-_TORQUE = {LimitationCode.TORQUE_CONTRADICTED}
 _FELL = 0.25  # of the level before: a quieter vibration is asked whether it still holds lines
 _HEARD, _UNHEARD = 0.5, 0.15  # part of the power that lines explain where a sensor hears the joint, and where not
 _DOUBTFUL = 0.0  # dB of signal to noise: the model explains less than half of the power
@@ -62,22 +61,22 @@ class Suspicion:
             return found
         flaw = doubt(LimitationCode.SENSOR_SILENT) if self._silent else vibration_flaw(period.vibration)
         cause = None
-        if found.blockers:
-            cause = flaw or self._cause(period.joint_samples, {limitation.code for limitation in found.blockers})
+        if found.blockers or found.is_hidden_by_misfit(self._settings.diagnosis.warn_index):
+            cause = flaw or self._cause(period.joint_samples, found.blockers)
         elif found.signal_to_noise < _DOUBTFUL:
             cause = self._foreign()
         if cause is not None:
             return found.explained(cause)
         return found if flaw is None else found.limited(flaw)
 
-    def _cause(self, samples: JointSamples, codes: Set[LimitationCode]) -> Limitation | None:
-        """Return what explains the limitations with these codes, by the last period's joint states or the stamps."""
+    def _cause(self, samples: JointSamples, blockers: Sequence[Limitation]) -> Limitation | None:
+        """Return what explains some limitations, by the last period's joint states or the stamps."""
         reducer = self._settings.reducer
         return (
             motion_flaw(samples, max(reducer.output_orders))
             or compare_stamps(self._recent, reducer, self._settings.dynamics, self._settings.analysis.harmonics)
             or self._foreign()
-            or (effort_flaw(samples) if codes & _TORQUE else None)
+            or (effort_flaw(samples) if any(map(_questions_torque, blockers)) else None)
         )
 
     def _foreign(self) -> Limitation | None:
@@ -102,6 +101,11 @@ class Suspicion:
     def _shares(self, records: Sequence[Record]) -> LineShares:
         settings = self._settings
         return line_shares(records, settings.reducer, settings.dynamics, settings.analysis.harmonics)
+
+
+def _questions_torque(limitation: Limitation) -> bool:
+    on_bound = limitation.code is LimitationCode.VALUE_ON_BOUND and "torque" in str(limitation.values["names"])
+    return on_bound or limitation.code is LimitationCode.TORQUE_CONTRADICTED
 
 
 def _typical(records: Sequence[Record], name: str) -> float:

@@ -80,7 +80,11 @@ FAULTS: dict[str, Fault] = {
     "stuck": Fault(
         fault="sensor stuck: the last value is repeated", rig={"sensor.fault": "stuck"}, cause="did not change"
     ),
-    "dying": Fault(fault="sensor dying over 12 s", rig={"sensor.fault": "dying", "sensor.fault_time": 12.0}),
+    "dying": Fault(
+        fault="sensor dying over 12 s",
+        rig={"sensor.fault": "dying", "sensor.fault_time": 12.0},
+        cause="the sensor's gain",
+    ),
     "gain": Fault(fault="gain 20 % too large", rig={"sensor.gain": 1.2}),
     "half": Fault(
         fault="gain half of what it should be",

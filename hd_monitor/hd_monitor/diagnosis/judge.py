@@ -23,6 +23,7 @@ from .wording import (
     describe_doubtful_limit,
     describe_doubtful_name,
     describe_relative,
+    describe_unexplained,
     describe_unknown_scale,
 )
 
@@ -127,6 +128,8 @@ class Judge:
         if odds.none >= limits.confidence:
             return self._named(Component.NONE, Level.OK, evidence, Cause.NONE)
         if not any(accused) and 1.0 - odds.none < limits.confidence:
+            if evidence.is_hidden_by_misfit(limits.warn_index):
+                return self._undetermined(describe_unexplained(evidence))
             return Verdict.waiting(describe_doubtful_limit(evidence, limits, limit))
         component = name_component(
             LinePair(*(max(size, limit) if one else 0.0 for size, one in zip(sizes, accused, strict=True))),

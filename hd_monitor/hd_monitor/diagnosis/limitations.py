@@ -57,8 +57,8 @@ SENTENCES: Mapping[LimitationCode, str] = {
         "reducer.circular_spline_teeth"
     ),
     LimitationCode.VALUE_ON_BOUND: (
-        "the fit ended on the limit of its search for {names}, so the value there is not a measurement: check the "
-        "parameters"
+        "the fit ended on the limit of its search for {names}, so the value there is not a measurement: check "
+        "teeth, mount, dynamics.* and load.*, and the sensor's gain and bandwidth"
     ),
     LimitationCode.STAMPS_APART: (
         "The stamps of the {late} lag those of the {early} by about {delay_ms:.0f} ms: stamp both when they are "
@@ -128,8 +128,9 @@ SENTENCES: Mapping[LimitationCode, str] = {
         "The vibration signal does not change at all while the joint turns: check the sensor"
     ),
     LimitationCode.INERTIA_MOVES: (
-        "The inertia moves along the motion: whether what is found stays the same shows after {needed_s:.0f} s of it, "
-        "of which {motion_s:.0f} s are seen"
+        "Only an inertia that moves along the motion explains the vibration: hold the other joints still, or check "
+        "teeth, mount, natural frequency and torque, and the sensor's gain and bandwidth; whether what is found stays "
+        "the same shows after {needed_s:.0f} s of motion, of which {motion_s:.0f} s are seen"
     ),
     LimitationCode.SEGMENTS_DISAGREE: (
         "The inertia moves along the motion, and what is found differs from segment to segment {factor:.0f} times as "

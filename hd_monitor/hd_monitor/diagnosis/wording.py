@@ -2,14 +2,11 @@
 
 import math
 
-from ..identification.result import Identification
+from ..identification.result import VAGUE, Identification
 from ..settings import DiagnosisSettings
 from .limitations import describe_limitation
 from .probability import Probabilities
 from .verdict import Cause, Component, Level
-
-_VAGUE = 0.2
-"""Standard deviation of an index over the warn limit from which it is not known well."""
 
 _ALIKE = -0.8
 """Correlation of a spline's index and transmission error from which the motion does not separate the two."""
@@ -114,6 +111,16 @@ def describe_unknown_scale(evidence: Identification) -> str:
     )
 
 
+def describe_unexplained(evidence: Identification) -> str:
+    """Say that the model does not explain the vibration well enough for a verdict, and what to check."""
+    return _with_doubts(
+        f"The vibration is not explained well enough ({_indexes(evidence)}): check teeth, mount, natural frequency and "
+        "torque, and the sensor's gain and bandwidth, and look for another source of vibration near the lines (mains "
+        "hum, a neighbouring machine)",
+        evidence,
+    )
+
+
 def describe_doubtful_limit(evidence: Identification, limits: DiagnosisSettings, limit: float) -> str:
     """Say that a reading may lie on either side of its limit, and what would help."""
     spline = max((0, 1), key=lambda s: evidence.index[s] + evidence.index_std[s])
@@ -124,7 +131,7 @@ def describe_doubtful_limit(evidence: Identification, limits: DiagnosisSettings,
             f"{_errors(evidence)}): a change of torque or of speed would tell them apart",
             evidence,
         )
-    if std > _VAGUE * limits.warn_index:
+    if std > VAGUE * limits.warn_index:
         return _with_doubts(
             f"The indexes are not known well enough ({_indexes(evidence)}): more motion, more speed or more load "
             "would show more",

@@ -8,7 +8,7 @@ from typing import Self
 import numpy as np
 
 from ..arrays import ComplexArray, FloatArray
-from ..limitation import Limitation
+from ..limitation import Limitation, LimitationCode
 from ..model.critical_speed import critical_speed
 from ..model.parameters import ParametricModel
 from ..reducer import LinePair
@@ -16,6 +16,9 @@ from .checks.something_else import SomethingElse
 from .fit.gauss_newton import FitStatus
 from .sensorless.agreement import DirectionEvidence
 from .sensorless.torque_share import TorqueShare
+
+VAGUE = 0.2
+"""Standard deviation of an index over its limit from which it is not known well."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -136,6 +139,12 @@ class Identification:
     def explained(self, cause: Limitation) -> Self:
         """Return the result with the cause of what forbids naming a part, in place of its consequences."""
         return replace(self, limitations=(replace(cause, blocks=True), *self.doubts))
+
+    def is_hidden_by_misfit(self, limit: float) -> bool:
+        """Whether the indexes would be known well, beside their `limit`, if the model explained the vibration."""
+        widened = [one.values["factor"] for one in self.doubts if one.code is LimitationCode.UNCERTAINTY_WIDENED]
+        std = max(self.index_std)
+        return bool(widened) and std > VAGUE * limit >= std / float(widened[0])
 
     @property
     def doubts(self) -> tuple[Limitation, ...]:

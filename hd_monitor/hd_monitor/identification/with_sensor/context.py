@@ -23,6 +23,9 @@ from .state import Setup, State
 NOMINAL_INDEX = 0.05
 """Of the larger spline, where an unknown torque leaves the scale open."""
 
+INCREDIBLE = 4.0
+"""Standard deviations, as given, by which torque and inertia may be wrong: beyond them something else is."""
+
 _TRIAL_WIND_UP = 1e-3  # rad
 
 
@@ -114,6 +117,12 @@ class Context:
         if setup.nominal_torque is not None:
             return self.unknowns.given_std(RELATIVE)
         return self.unknowns.given_std(sure.measured_torque if setup.measured else sure.assumed_torque)
+
+    def contradicts_torque(self, setup: Setup, values: FloatArray) -> bool:
+        """Whether some values of the unknowns need a torque that is not credible beside the one given or measured."""
+        place = self.unknowns.torque
+        known = setup.nominal_torque is None
+        return known and abs(float(values[place])) > INCREDIBLE * float(self.given_std(setup)[place])
 
     def prior(self, setup: Setup) -> Information:
         """What is known of the unknowns before any data."""

@@ -14,8 +14,16 @@ from ..teeth.trial import ToothTrial
 from ..teeth.watch import ToothWatch
 from .conclusion import conclude
 from .context import Context, Unexplained
-from .schedule import POOR, SECOND_LOOK
-from .search import fit_wandering, is_followed, let_inertia_wander, look_elsewhere, settle, turn_sensor
+from .schedule import SECOND_LOOK
+from .search import (
+    fit_wandering,
+    is_followed,
+    is_poor,
+    let_inertia_wander,
+    look_elsewhere,
+    settle,
+    turn_sensor,
+)
 from .state import WINDOW, State
 
 WELL_KNOWN = 0.02
@@ -84,7 +92,7 @@ class Estimator:
         context, u = self._context, self._context.unknowns
         segment, setup = context.segment(records, state.setup)
         values = segment.acceleration[segment.used]
-        if values.size < 4 * u.size:
+        if values.size < u.size:
             return state
         if float(np.ptp(values)) == 0.0:
             return replace(state, unusable=blocker(LimitationCode.VIBRATION_CONSTANT))
@@ -148,15 +156,11 @@ class Estimator:
         if hopeless or state.setup.wanders or not (unsettled or state.schedule.is_due(inflation, state.seconds)):
             return state, fit, left
         state, fit = look_elsewhere(context, state, fit)
-        left = context.unexplained(state, fit)
-        if state.seconds <= WINDOW and left.residual.inflation(state.coverage.span) > POOR:
-            state, fit = turn_sensor(context, state, fit)
-            left = context.unexplained(state, fit)
         # An arm's inertia moves from the first move on: what changes later is a change of the reducer
-        if state.seconds <= WINDOW and left.residual.inflation(state.coverage.span) > POOR:
-            state, fit = let_inertia_wander(context, state, fit)
-            left = context.unexplained(state, fit)
-        return state, fit, left
+        for other_model in (turn_sensor, let_inertia_wander):
+            if state.seconds <= WINDOW and is_poor(context, state, fit):
+                state, fit = other_model(context, state, fit)
+        return state, fit, context.unexplained(state, fit)
 
     def _question_teeth(self, state: State, fit: Fit) -> ToothWatch:
         """Ask whether other tooth numbers than those given explain the recent motion better."""

@@ -16,9 +16,6 @@ from .state import WINDOW, State
 SURE = 3.0
 """Standard deviations by which a value must differ from the one given before that is said."""
 
-INCREDIBLE = 4.0
-"""Standard deviations, as given, by which torque and inertia may be wrong: beyond them something else is."""
-
 _DISPUTED = 19.0  # inflation from which a wandering inertia, which can follow much, names no part
 _WIDENED = 2.25  # inflation of the variances that is worth mentioning
 _WIND_UP = 0.25  # rad; no reducer takes it
@@ -116,7 +113,7 @@ def _corrections(context: Context, state: State, fit: Fit, std: FloatArray) -> I
         yield doubt(code, delay_ms=1e3 * abs(float(values[u.delay])))
     if state.setup.nominal_torque is None and differs(u.torque, _CORRECTED_TORQUE):
         factor = math.exp(values[u.torque])
-        if abs(values[u.torque]) > INCREDIBLE * context.given_std(state.setup)[u.torque]:
+        if context.contradicts_torque(state.setup, values):
             yield blocker(LimitationCode.TORQUE_CONTRADICTED, factor=factor)
         else:
             yield doubt(LimitationCode.TORQUE_CORRECTED, factor=factor)

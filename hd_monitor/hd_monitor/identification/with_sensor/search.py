@@ -10,12 +10,12 @@ from ..fit.noise import NoiseFloor
 from ..segment.segment import Segment
 from ..segment.wander import Wander
 from .context import Context
+from .schedule import POOR
 from .state import State
 
 FOLLOWED = 3.0
 """Cost over its expectation up to which the course of an inertia counts as found."""
 
-_TURNED = 0.3  # part of the misfit that may be left once the sensor's sign is turned
 _ROUNDS = 10
 _EFFORT = 16.0  # s of motion that a fit of all segments may predict
 _FEWEST = 4
@@ -82,9 +82,7 @@ def turn_sensor(context: Context, state: State, fit: Fit) -> tuple[State, Fit]:
     small, best = multistart_newest(context.problem_of_all(turned), load_starts(u), rounds=_ROUNDS)[0]
     if not is_better(replace(small, segments=newest_segments(state.recent)), best, fit.values):
         return state, fit
-    turned, other = restart(context, turned, small.floor, [best.values])
-    left, left_turned = (context.unexplained(*pair).residual.misfit for pair in ((state, fit), (turned, other)))
-    return (state, fit) if left_turned > _TURNED * left else (turned, other)
+    return _replaced(context, (state, fit), restart(context, turned, small.floor, [best.values]))
 
 
 def let_inertia_wander(context: Context, state: State, fit: Fit) -> tuple[State, Fit]:
@@ -98,7 +96,18 @@ def let_inertia_wander(context: Context, state: State, fit: Fit) -> tuple[State,
     small, best = multistart_newest(context.problem_of_all(wandering), starts, rounds=_ROUNDS)[0]
     if not is_better(replace(small, segments=newest_segments(state.recent)), best, fit.values):
         return state, fit
-    return restart(context, wandering, small.floor, [best.values])
+    return _replaced(context, (state, fit), restart(context, wandering, small.floor, [best.values]))
+
+
+def _replaced(context: Context, present: tuple[State, Fit], other: tuple[State, Fit]) -> tuple[State, Fit]:
+    """Return the solution of another model if it leaves next to nothing but noise: a misfit alone proves neither."""
+    return present if is_poor(context, *other) else other
+
+
+def is_poor(context: Context, state: State, fit: Fit) -> bool:
+    """Whether a fit leaves more at the lines than noise could, or needs a torque that contradicts the one given."""
+    inflation = context.unexplained(state, fit).residual.inflation(state.coverage.span)
+    return inflation > POOR or context.contradicts_torque(state.setup, fit.values)
 
 
 def fit_wandering(problem: Problem, values: FloatArray, before: Segment | None) -> Fit:
