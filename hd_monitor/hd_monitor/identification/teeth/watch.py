@@ -84,6 +84,7 @@ class ToothWatch:
         *,
         seconds: float,
         one_speed: bool,
+        poor: bool = False,
     ) -> "ToothWatch":
         """Compare other tooth numbers with those given, once for each change of the evidence for them.
 
@@ -98,10 +99,13 @@ class ToothWatch:
         one_speed : bool
             Whether all of it was at one speed: then a tone of fixed frequency looks like one line, and only both
             lines of a pair are evidence. Else any two lines are.
+        poor : bool
+            Whether the fit with the teeth given leaves more at their lines than noise could: then lines where they
+            should be are no proof of them, as a load's side lines fall on those of neighbours.
         """
         if seconds < FIRST_LOOK:
             return self
-        if not self._is_unexplained:
+        if not (self._is_unexplained or poor):
             return replace(self, asked=(), doubt=None)
         candidates = strongest(self.signal.amplitudes, given, harmonics)
         asked = tuple(candidate.teeth for candidate in candidates)
@@ -112,9 +116,11 @@ class ToothWatch:
         far = self.signal.turns > APART
         shown = {candidate.teeth for candidate in candidates if far and shows_two_lines(candidate, [self.signal.solve])}
         looked = replace(self, asked=asked, seconds=seconds)
-        if own in shown and self._are_strong(own):  # a tone beside them makes another pair with one of the two
+        stands = own in shown and self._are_strong(own)  # a tone beside them makes another pair with one of the two
+        if stands and not poor:
             return replace(looked, doubt=None)
-        if ranking.lead(own) > LEAD and (best.teeth in shown or (best.pairs_found > 1 and not one_speed)):
+        found = best.teeth in shown or (best.pairs_found > 1 and not one_speed)
+        if found and not stands and ranking.lead(own) > LEAD:
             return replace(looked, doubt=ranking.contradiction(given))
         open_to = set(asked) if self.signal.turns < APART and not one_speed else shown
         near = [

@@ -14,7 +14,7 @@ from ..teeth.trial import ToothTrial
 from ..teeth.watch import ToothWatch
 from .conclusion import conclude
 from .context import Context, Unexplained
-from .schedule import SECOND_LOOK
+from .schedule import POOR, SECOND_LOOK
 from .search import (
     fit_wandering,
     is_followed,
@@ -172,4 +172,5 @@ class Estimator:
             trial.best,
             seconds=state.seconds,
             one_speed=not state.coverage.speed_varies,
+            poor=state.excess > POOR,
         )
