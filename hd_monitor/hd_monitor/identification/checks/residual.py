@@ -162,6 +162,10 @@ class LineResidual:
         beyond = max(float(np.sum(left)) - left.size, 0.0)
         return math.sqrt(beyond / explained) if explained > 0.0 else 0.0
 
+    def excess(self, travel: float) -> float:
+        """What is left at the lines, or differs from segment to segment, over what noise would leave; at least 1."""
+        return max(self.inflation(travel), self.overdispersion.inflation)
+
     def inflation(self, span: float) -> float:
         """Factor by which the misfit widens the variances: 1 as long as chance explains it.
 

@@ -106,8 +106,8 @@ def _replaced(context: Context, present: tuple[State, Fit], other: tuple[State, 
 
 def is_poor(context: Context, state: State, fit: Fit) -> bool:
     """Whether a fit leaves more at the lines than noise could, or needs a torque that contradicts the one given."""
-    inflation = context.unexplained(state, fit).residual.inflation(state.coverage.span)
-    return inflation > POOR or context.contradicts_torque(state.setup, fit.values)
+    excess = context.unexplained(state, fit).residual.excess(state.coverage.span)
+    return excess > POOR or context.contradicts_torque(state.setup, fit.values)
 
 
 def fit_wandering(problem: Problem, values: FloatArray, before: Segment | None) -> Fit:

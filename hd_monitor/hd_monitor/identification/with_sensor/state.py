@@ -120,14 +120,9 @@ class State:
         return self.setup.nominal_torque is not None
 
     @property
-    def excess(self) -> float:
-        """What fits leave at the lines, or segments differ by, over what noise would; at least 1."""
-        return max(self.residual.inflation(self.coverage.span), self.residual.overdispersion.inflation)
-
-    @property
     def inflation(self) -> float:
         """Factor on the variances by which the model's misfit widens them."""
-        return 1.0 + UNSEEN**2 * (self.excess - 1.0)
+        return 1.0 + UNSEEN**2 * (self.residual.excess(self.coverage.span) - 1.0)
 
     def with_segment(self, segment: Segment, setup: Setup) -> "State":
         """Return the state with a further segment, still to be fitted."""
