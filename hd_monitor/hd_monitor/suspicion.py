@@ -18,7 +18,7 @@ RECENT = 16.0
 """Time [s] that is looked at."""
 
 _FELL = 0.25  # of the level before: a quieter vibration is asked whether it still holds lines
-_HEARD, _UNHEARD = 0.5, 0.15  # part of the power that lines explain where a sensor hears the joint, and where not
+_HEARD = 0.5  # part of the power: where lines explain most of it the sensor hears the joint
 _DOUBTFUL = 0.0  # dB of signal to noise: the model explains less than half of the power
 _NEAR, _FOLLOWS = 0.03, 0.2  # part of the power near the lines, and that of it that follows the angle
 _AS_FAST = 0.8  # of the speed before
@@ -96,7 +96,7 @@ class Suspicion:
                 return False
             if self._shares(earlier).by_window < _HEARD:
                 return False
-        return self._shares(newest).by_window < _UNHEARD
+        return self._shares(newest).by_window < _HEARD
 
     def _shares(self, records: Sequence[Record]) -> LineShares:
         settings = self._settings
