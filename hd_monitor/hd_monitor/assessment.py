@@ -7,6 +7,8 @@ import numpy as np
 
 from .acquisition.quality import Quality
 from .acquisition.record import JointSamples, Record, join_records
+from .contract import NANOSECONDS
+from .diagnosis.inputs import InputState
 from .diagnosis.verdict import Verdict
 from .identification.result import Identification
 from .orders.rms_curve import SpeedBin
@@ -27,6 +29,13 @@ class Assessment:
     settings : JointSettings
         In force at that time.
     verdict : Verdict
+        Of the reducer; it outlives its inputs.
+    input : InputState
+        Whether the inputs arrive.
+    evidence_end : int or None
+        Stamp of the newest motion behind the verdict [ns]; None where there was none.
+    recalled : bool
+        Whether the verdict is that of an earlier run, for want of a new one.
     identification : Identification or None
         None as long as nothing could be identified.
     steady_parts : tuple of Record
@@ -53,6 +62,9 @@ class Assessment:
     stamp: int
     settings: JointSettings
     verdict: Verdict
+    input: InputState
+    evidence_end: int | None
+    recalled: bool
     identification: Identification | None
     steady_parts: tuple[Record, ...]
     rms_curve: tuple[SpeedBin, ...]
@@ -63,6 +75,13 @@ class Assessment:
     records: tuple[Record, ...] = ()
     joint_samples: JointSamples | None = None
     extra: tuple[tuple[str, str], ...] = ()
+
+    @property
+    def evidence_age(self) -> float:
+        """How old the newest motion behind the verdict is [s]; NaN where there was none, or the clock was set back."""
+        if self.evidence_end is None or self.evidence_end > self.stamp:
+            return math.nan
+        return (self.stamp - self.evidence_end) / NANOSECONDS
 
     @property
     def steady(self) -> Record | None:

@@ -18,6 +18,7 @@ from .limitation import Limitation
 from .orders.rms_curve import RmsAccumulator, SpeedBin
 from .orders.steady import SteadySegment
 from .settings import JointSettings
+from .sources import Quantity
 from .suspicion import Suspicion
 
 _SLOW_DEGREE = 5  # of the polynomial that removes gravity and rigid motion from a second of an IMU's signal
@@ -69,8 +70,15 @@ class Evidence:
         self._steady = SteadySegment(settings.reducer, settings.analysis.minimum_speed)
         self._identifier = identifier or new_identifier(settings)
 
-    def add(self, period: AssembledPeriod) -> None:
-        """Take in another period; one whose positions and velocities contradict each other is left out."""
+    def add(self, period: AssembledPeriod) -> bool:
+        """Take in another period; one whose positions and velocities contradict each other is left out.
+
+        Returns
+        -------
+        bool
+            Whether it is evidence: motion that was taken in.
+        """
+        turns = self.speed(period) >= self._settings.analysis.minimum_speed  # False for NaN
         moves, contradiction = compare_motion(
             period.joint_samples,
             minimum_speed=self._settings.analysis.minimum_speed / self._rpm,
@@ -80,11 +88,11 @@ class Evidence:
         if moves:
             self._contradiction = contradiction
         if self._contradiction is not None:
-            return
+            return False
         if isinstance(self._identifier, SensorlessIdentifier):
             if len(period.joint_samples):
                 self._identifier.add(period.joint_samples)
-            return
+            return turns
         self._suspicion.add(period)
         for record in period.records:
             if interrupted:
@@ -94,6 +102,7 @@ class Evidence:
             self._identifier.add(record)
         if not period.records:
             self._steady.interrupt()
+        return turns and bool(period.records) and Quantity.VIBRATION in period.usable
 
     def finish(self) -> None:
         """Use what is still waiting to become a longer segment."""

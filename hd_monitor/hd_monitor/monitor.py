@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -12,8 +13,9 @@ from .acquisition.presence import Presence
 from .acquisition.recorder import AssembledPeriod, Recorder
 from .acquisition.timeline import Period
 from .assessment import Assessment
-from .contract import NANOSECONDS, Block
-from .diagnosis.absence import lost, not_enough, nothing_received, with_assumed_torque
+from .contract import Block
+from .diagnosis.absence import WAITING, WITHOUT_INPUT, not_enough, with_assumed_torque
+from .diagnosis.inputs import InputState, describe_inputs, describe_silence
 from .diagnosis.judge import Judge
 from .diagnosis.verdict import FaultCode, Verdict
 from .evidence import Evidence
@@ -24,6 +26,14 @@ from .settings import JointSettings
 from .sources import Quantity
 
 
+class Recalled(NamedTuple):
+    """What was said of a reducer before."""
+
+    verdict: Verdict
+    evidence_end: int | None
+    """Stamp of the newest motion behind it [ns]; None where there was none."""
+
+
 class Monitor:
     """Watches one reducer.
 
@@ -32,6 +42,8 @@ class Monitor:
     settings : JointSettings
     identifier : Identifier or SensorlessIdentifier, optional
         An identifier to continue with, for example from an earlier recording of the same joint.
+    recalled : Recalled, optional
+        What was last said of this reducer, which stands as long as there is no new verdict.
 
     Attributes
     ----------
@@ -56,13 +68,20 @@ class Monitor:
     []
     """
 
-    def __init__(self, settings: JointSettings, identifier: Identifier | SensorlessIdentifier | None = None) -> None:
+    def __init__(
+        self,
+        settings: JointSettings,
+        identifier: Identifier | SensorlessIdentifier | None = None,
+        recalled: Recalled | None = None,
+    ) -> None:
         self.settings = settings
         self._recorder = Recorder(settings)
         self._intake = Intake(settings, self._recorder.count)
-        self._presence = Presence(settings.sources, round(settings.input.timeout * NANOSECONDS))
+        self._presence = Presence(settings)
         self._evidence = Evidence(settings, identifier)
         self._judge = Judge(settings)
+        self._recalled = recalled is not None
+        self._verdict, self._evidence_end = recalled or Recalled(WAITING, None)
         self.baseline: Baseline | None = None
         self.latest: Assessment | None = None
 
@@ -115,8 +134,8 @@ class Monitor:
                 if self.latest is None or len(newest) == len(period.samples):  # one input alone adds nothing
                     self._assess(period, now=max(newest, default=period.start))  # what follows the data is no silence
             self._evidence.finish()
-        if self.latest is None or self.latest.verdict.fault_code in (FaultCode.INPUT_LOST, FaultCode.INPUT_INVALID):
-            return self.latest
+        if self.latest is None:
+            return None
         verdict = self.latest.verdict
         if (found := self._evidence.identification) is not None:
             verdict = rated(self._judge.conclude(found), found, self.baseline, self.settings.diagnosis)
@@ -125,8 +144,8 @@ class Monitor:
         return self.latest
 
     def silence(self, now: int) -> Assessment:
-        """Say that nothing came for ``input.timeout`` until `now` [ns] by the caller's clock; the evidence is kept."""
-        return self._pack(now, nothing_received(self._presence.absent, self._presence.timeout), None)
+        """Say that nothing came until `now` [ns], by the messages' clock; verdict and evidence are kept."""
+        return self._pack(now, self._verdict, describe_silence(self._presence.absent), None)
 
     def change_limits(self, settings: JointSettings) -> None:
         """Put the ``diagnosis.*`` parameters of other settings in force, without losing any evidence."""
@@ -142,6 +161,7 @@ class Monitor:
         self._judge = Judge(self.settings)
         self._recorder.cut()
         self._evidence = Evidence(self.settings)
+        self._verdict, self._evidence_end, self._recalled = WAITING, None, False
         self.baseline = None
 
     # One period ----------------------------------------------------------------------------------------------------
@@ -155,10 +175,11 @@ class Monitor:
             if samples.stamps.size:
                 newest = int(samples.stamps.max())
                 self._presence.note(quantity, newest, newest if quantity in assembled.usable else None)
-        self._evidence.add(assembled)
-        losses = self._presence.losses(period.end if now is None else now)
-        if losses:
-            verdict = lost(losses, self._recorder.last_fault, self._presence.timeout)
+        grown = self._evidence.add(assembled)
+        missing = self._presence.missing(period.end if now is None else now)
+        state = describe_inputs(missing, self._recorder.last_fault)
+        if state.failed:  # nothing new to judge: the last verdict stands
+            verdict = self._verdict if self._verdict.fault_code is not FaultCode.WAITING else WITHOUT_INPUT
         else:
             found = self._evidence.identification
             otherwise = not_enough(
@@ -173,7 +194,14 @@ class Monitor:
             verdict = rated(verdict, found, self.baseline, self.settings.diagnosis)
             if found is not None:
                 verdict = self._with_torque(verdict)
-        self.latest = self._pack(period.end, verdict, assembled)
+            if self._recalled and verdict.fault_code is FaultCode.WAITING:
+                verdict = self._verdict
+            else:
+                self._recalled = False
+        if grown and not self._recalled:
+            self._evidence_end = period.end
+        self._verdict = verdict
+        self.latest = self._pack(period.end, verdict, state, assembled)
         return self.latest
 
     def _with_torque(self, verdict: Verdict) -> Verdict:
@@ -181,7 +209,7 @@ class Monitor:
             return verdict
         return with_assumed_torque(verdict, self.settings.load.torque)
 
-    def _pack(self, stamp: int, verdict: Verdict, assembled: AssembledPeriod | None) -> Assessment:
+    def _pack(self, stamp: int, verdict: Verdict, state: InputState, assembled: AssembledPeriod | None) -> Assessment:
         evidence = self._evidence
         intake = self._intake
         quality = self._recorder.quality(
@@ -191,6 +219,9 @@ class Monitor:
             stamp=stamp,
             settings=self.settings,
             verdict=verdict,
+            input=state,
+            evidence_end=self._evidence_end,
+            recalled=self._recalled,
             identification=evidence.identification,
             steady_parts=evidence.steady_parts,
             rms_curve=evidence.rms_curve,

@@ -59,7 +59,7 @@ def start(context: LaunchContext) -> list[Node]:
             {
                 "input.source": value("source"),
                 # Loss counts by the stamps, which run as much faster as the rig does.
-                "input.timeout": 3.0 * max(1.0, time_scale),
+                "input.timeout": 5.0 * max(1.0, time_scale),
                 "reducer.serial": ParameterValue(value("serial"), value_type=str),  # 1147 is a text too
                 "diagnosis.warn_index": float(value("warn_index")),
                 "diagnosis.error_index": float(value("error_index")),

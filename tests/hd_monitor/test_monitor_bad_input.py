@@ -8,10 +8,13 @@ from tests.hd_monitor.monitored import BLOCK, EPOCH, PAPER, RATE, SETTINGS, Reco
 
 from hd_monitor.arrays import FloatArray, IntArray
 from hd_monitor.contract import Block
+from hd_monitor.diagnosis.inputs import InputCode
 from hd_monitor.diagnosis.verdict import Component, FaultCode, Level
 from hd_monitor.monitor import Monitor
 from hd_monitor.settings import JointSettings
 from hd_monitor.sources import Quantity
+
+HASTY = JointSettings.from_mapping(PAPER | {"input.timeout": 2.0})
 
 
 @pytest.fixture(scope="module")
@@ -20,41 +23,66 @@ def recording() -> Recording:
 
 
 @pytest.mark.parametrize("missing", ["joint states", "vibration"])
-def test_a_missing_input_is_named(recording: Recording, missing: str) -> None:
-    monitor = Monitor(SETTINGS)
+def test_an_input_that_never_comes_is_awaited_then_overdue_then_lost(recording: Recording, missing: str) -> None:
+    times = {"input.timeout": 2.0, "input.startup_warning": 4.0, "input.startup_timeout": 7.0}
+    monitor = Monitor(JointSettings.from_mapping(PAPER | times))
     if missing == "vibration":
         recording.feed_motion(monitor)
     else:
         for block in recording.blocks():
             monitor.add_block(block)
-    verdict = monitor.advance()[-1].verdict
-    assert (verdict.component, verdict.fault_code) == (Component.UNDETERMINED, FaultCode.INPUT_LOST)
-    assert verdict.level is Level.ERROR
-    assert missing in verdict.reason
+    said = monitor.advance()
+    states = [(assessment.input.level, assessment.input.code) for assessment in said]
+    waiting = [(Level.OK, InputCode.WAITING)] * 3 + [(Level.WARN, InputCode.WAITING)] * 3
+    assert states == [*waiting, *[(Level.ERROR, InputCode.LOST)] * (len(said) - 6)]
+    assert len(said) > 6
+    assert all(missing in assessment.input.reason for assessment in said)
+    assert {(assessment.verdict.fault_code, assessment.verdict.level) for assessment in said} == {
+        (FaultCode.WAITING, Level.OK)
+    }
+    assert f"no {missing}" in said[0].verdict.reason
 
 
-def test_silence_keeps_the_evidence(recording: Recording) -> None:
+def test_silence_keeps_verdict_and_evidence(recording: Recording) -> None:
     monitor = run(recording)
     before = latest(monitor)
     silent = monitor.silence(before.stamp + 5 * 10**9)
-    assert silent.verdict.fault_code is FaultCode.INPUT_LOST
+    assert silent.input.code is InputCode.LOST
+    assert silent.verdict.component is Component.FLEXSPLINE
+    assert silent.verdict.level is Level.ERROR
+    assert silent.evidence_age == pytest.approx(before.evidence_age + 5.0)
     assert silent.identification is before.identification
     assert latest(monitor) is before
 
 
 def test_loss_of_an_input_midway_and_its_return(recording: Recording) -> None:
-    lost = slice(30, 70)
+    lost = slice(40, 80)
     blocks = recording.blocks()
     del blocks[lost]
-    monitor = Monitor(SETTINGS)
+    monitor = Monitor(HASTY)
     recording.feed_motion(monitor)
     for block in blocks:
         monitor.add_block(block)
-    codes = [assessment.verdict.fault_code for assessment in monitor.advance()]
-    assert FaultCode.INPUT_LOST in codes
-    assert codes[-1] is FaultCode.FLEXSPLINE
+    said = monitor.advance()
+    during = [assessment for assessment in said if assessment.input.code is InputCode.LOST]
+    assert during
+    assert {assessment.verdict.fault_code for assessment in during} == {FaultCode.FLEXSPLINE}
+    assert [assessment.evidence_age for assessment in during] == [float(n) for n in range(2, 2 + len(during))]
+    assert (said[-1].verdict.fault_code, said[-1].input.code) == (FaultCode.FLEXSPLINE, InputCode.OK)
+    assert said[-1].evidence_age == 0.0
     assert latest(monitor).quality.gaps == 1
     assert latest(monitor).quality.lost == 4000
+
+
+def test_without_a_verdict_a_lost_input_leaves_none(recording: Recording) -> None:
+    monitor = Monitor(HASTY)
+    recording.feed_motion(monitor)
+    for block in recording.blocks()[:5]:
+        monitor.add_block(block)
+    said = monitor.advance()[-1]
+    assert said.input.code is InputCode.LOST
+    assert (said.verdict.fault_code, said.verdict.level) == (FaultCode.WAITING, Level.OK)
+    assert "the input's status says which" in said.verdict.reason
 
 
 def test_bad_samples_are_counted_and_survived(recording: Recording) -> None:
@@ -138,8 +166,9 @@ def test_alternating_samples_of_two_publishers_give_no_verdict(recording: Record
     stamps = np.column_stack([recording.stamps, recording.stamps + lag]).ravel()
     values = np.column_stack([recording.values, -recording.values]).ravel()
     assessment = latest(samples_only(recording, stamps, values))
-    assert assessment.verdict.fault_code is FaultCode.INPUT_INVALID
-    assert "2 publishers alternate" in assessment.verdict.reason
+    assert assessment.input.code is InputCode.INVALID
+    assert "2 publishers alternate" in assessment.input.reason
+    assert assessment.verdict.component is Component.UNDETERMINED
     assert assessment.quality.dropped > 0
 
 
@@ -154,8 +183,8 @@ def test_samples_in_heaps_a_microsecond_apart_cost_no_memory(recording: Recordin
         _, peak = tracemalloc.get_traced_memory()
     finally:
         tracemalloc.stop()
-    assert latest(monitor).verdict.fault_code is FaultCode.INPUT_INVALID
-    assert "1 µs apart" in latest(monitor).verdict.reason
+    assert latest(monitor).input.code is InputCode.INVALID
+    assert "1 µs apart" in latest(monitor).input.reason
     assert peak < 10e6
 
 
@@ -164,19 +193,21 @@ def test_a_stuck_sensor_gives_no_verdict(recording: Recording) -> None:
     assessment = latest(run(recording, blocks))
     assert assessment.quality.stuck == assessment.quality.samples
     assert assessment.verdict.component is Component.UNDETERMINED
-    assert assessment.verdict.fault_code is FaultCode.INPUT_INVALID
-    assert "did not change" in assessment.verdict.reason
+    assert assessment.input.code is InputCode.INVALID
+    assert "did not change" in assessment.input.reason
     assert assessment.zoom is None
 
 
-def test_a_sensor_that_breaks_later_is_not_covered_by_old_evidence(recording: Recording) -> None:
+def test_a_sensor_that_breaks_later_shows_although_the_verdict_stands(recording: Recording) -> None:
     blocks = [
         block._replace(samples=np.full(BLOCK, np.nan)) if block.sequence > 60 else block for block in recording.blocks()
     ]
-    assessment = latest(run(recording, blocks))
-    assert assessment.identification is not None
-    assert assessment.verdict.fault_code is FaultCode.INPUT_INVALID
-    assert "not finite" in assessment.verdict.reason
+    assessment = latest(run(recording, blocks, HASTY))
+    assert assessment.verdict.component is Component.FLEXSPLINE
+    assert assessment.evidence_age > 3.0
+    assert assessment.input.level is Level.ERROR
+    assert assessment.input.code is InputCode.INVALID
+    assert "not finite" in assessment.input.reason
 
 
 def test_a_clock_set_back_loses_no_evidence(recording: Recording) -> None:

@@ -8,7 +8,8 @@ from tests.hd_monitor.monitored import BLOCK, EPOCH, PAPER, RATE, Recording, lat
 
 from hd_monitor.arrays import FloatArray, IntArray
 from hd_monitor.assessment import Assessment
-from hd_monitor.diagnosis.verdict import Component, FaultCode, Level
+from hd_monitor.diagnosis.inputs import InputCode
+from hd_monitor.diagnosis.verdict import Component, Level
 from hd_monitor.monitor import Monitor
 from hd_monitor.settings import JointSettings
 from hd_monitor.sources import Quantity
@@ -16,7 +17,8 @@ from hd_monitor.sources import Quantity
 SECOND = 1_000_000_000
 BLOCK_TIME = SECOND * BLOCK // RATE
 # A parameter that would make the indexes three times too small, were it used.
-SETTINGS = JointSettings.from_mapping(PAPER | {"load.source": "wrench", "load.torque": 30.0})
+GIVEN = PAPER | {"load.source": "wrench", "load.torque": 30.0}
+SETTINGS = JointSettings.from_mapping(GIVEN)
 
 Torque = tuple[IntArray, FloatArray]
 
@@ -95,18 +97,19 @@ def test_short_holes_are_bridged(recording: Recording, torque: Torque, value: fl
 
 @pytest.mark.parametrize(
     ("value", "code", "words"),
-    [(None, FaultCode.INPUT_LOST, "No torque signal"), (np.nan, FaultCode.INPUT_INVALID, "not finite")],
+    [(None, InputCode.LOST, "No torque signal"), (np.nan, InputCode.INVALID, "not finite")],
     ids=["lost", "not finite"],
 )
 def test_a_failed_sensor_is_named_and_its_return_continues_with_the_evidence(
-    recording: Recording, torque: Torque, value: float | None, code: FaultCode, words: str
+    recording: Recording, torque: Torque, value: float | None, code: InputCode, words: str
 ) -> None:
-    monitor = Monitor(SETTINGS)
+    monitor = Monitor(JointSettings.from_mapping(GIVEN | {"input.timeout": 2.0}))
     said = feed(monitor, recording, damaged(torque, lambda t: (t > 4.0) & (t < 8.5), value))
-    during = [s for s in said if s.verdict.fault_code is code]
+    during = [s for s in said if s.input.code is code]
     assert during
-    assert {s.verdict.level for s in during} == {Level.ERROR}
-    assert all(words in s.verdict.reason for s in during)
+    assert {s.input.level for s in during} == {Level.ERROR}
+    assert all(words in s.input.reason for s in during)
+    assert {s.verdict.component for s in during} == {Component.FLEXSPLINE}
     assert all(not s.records for s in during)  # no torque is put in the place of the measured one
     assert all(s.identification is not None for s in during)
     assert latest(monitor).verdict.component is Component.FLEXSPLINE
@@ -114,11 +117,12 @@ def test_a_failed_sensor_is_named_and_its_return_continues_with_the_evidence(
 
 
 def test_a_sensor_that_never_comes_is_missed(recording: Recording) -> None:
-    monitor = Monitor(SETTINGS)
+    monitor = Monitor(JointSettings.from_mapping(GIVEN | {"input.startup_warning": 3.0}))
     said = feed(monitor, recording, (np.empty(0, dtype=np.int64), np.empty(0)))
-    assert said[-1].verdict.fault_code is FaultCode.INPUT_LOST
-    assert "torque signal" in said[-1].verdict.reason
-    assert "joint states" not in said[-1].verdict.reason
+    assert (said[-1].input.level, said[-1].input.code) == (Level.WARN, InputCode.WAITING)
+    assert "torque signal" in said[-1].input.reason
+    assert "joint states" not in said[-1].input.reason
+    assert said[-1].verdict.reason == "No verdict yet: no torque signal so far"
 
 
 def test_zeros_do_not_count_as_measured(recording: Recording, torque: Torque) -> None:

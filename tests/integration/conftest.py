@@ -59,13 +59,16 @@ class Bench:
         self._start_module = start_module
         self._processes: list[Any] = []
         self.statuses: list[Shown] = []
+        """Of reducers."""
+        self.inputs: list[Shown] = []
+        """Of their inputs, each with the status of its reducer at the same place of the other list."""
         self.arrays: list[Any] = peer.collect(DiagnosticArray, "/diagnostics", match=False)
         self._read = 0
 
     def monitor(self, *parameters: str) -> Any:
         # Loss counts by the stamps, which a rig at ten times real time lets run as fast; and one topic may come seconds
         # later than another where the monitor has yet to find a publisher that has found it.
-        return self._start(MONITOR, ("input.timeout:=120.0", *parameters))
+        return self._start(MONITOR, ("input.timeout:=120.0", "input.startup_timeout:=120.0", *parameters))
 
     def rig(self, *parameters: str) -> Any:
         return self._start(RIG, parameters)
@@ -75,18 +78,23 @@ class Bench:
         self._processes.append(process)
         return process
 
+    def stop(self, process: Any) -> None:
+        """End a node that the wait for statuses must not miss."""
+        self._processes.remove(process)
+        process.interrupt()
+
     def forget(self) -> None:
         """Let only what comes from now on count."""
         self._update()
         self.statuses.clear()
+        self.inputs.clear()
 
     def _update(self) -> None:
         for message in self.arrays[self._read :]:
             for status in message.status:
                 values = {pair.key: pair.value for pair in status.values}
-                self.statuses.append(
-                    Shown(status.name, int.from_bytes(status.level), status.message, status.hardware_id, values)
-                )
+                shown = Shown(status.name, int.from_bytes(status.level), status.message, status.hardware_id, values)
+                (self.statuses if status.name.endswith(" reducer") else self.inputs).append(shown)
         self._read = len(self.arrays)
 
     def until(self, condition: Callable[[], object], what: str) -> None:
@@ -100,18 +108,25 @@ class Bench:
         try:
             self.peer.until(met, what)
         except pytest.fail.Exception as failure:
-            last = self.statuses[-1] if self.statuses else "none at all"
-            pytest.fail(f"{failure}\nlast status: {last}")
+            last = (self.statuses[-1], self.inputs[-1]) if self.statuses else "none at all"
+            pytest.fail(f"{failure}\nlast statuses: {last}")
 
     def until_status(self, accepts: Callable[[Shown], object], what: str) -> Shown:
-        """Wait for a status and return it."""
+        """Wait for a status of a reducer and return it."""
+        return self._until(self.statuses, accepts, what)
+
+    def until_input(self, accepts: Callable[[Shown], object], what: str) -> Shown:
+        """Wait for a status of an input and return it."""
+        return self._until(self.inputs, accepts, what)
+
+    def _until(self, statuses: list[Shown], accepts: Callable[[Shown], object], what: str) -> Shown:
         checked = 0
         found: list[Shown] = []
 
         def met() -> bool:
             nonlocal checked
-            found.extend(status for status in self.statuses[checked:] if accepts(status))
-            checked = len(self.statuses)
+            found.extend(status for status in statuses[checked:] if accepts(status))
+            checked = len(statuses)
             return bool(found)
 
         self.until(met, what)

@@ -115,7 +115,7 @@ def test_latch_holds_until_it_is_reset(bench: Bench, peer: Any) -> None:
     bench.until_status(settled, "a settled verdict")
     assert set_parameter(peer, "hd_sim_node", "defect", "none").successful
     held = bench.until_status(
-        lambda s: s.message.startswith("latched: ") and "now: Both splines are sound" in s.message,
+        lambda s: s.message.startswith("latched: ") and "now: Both splines are sound" in s.values["reason"],
         "a latched verdict beside a sound reducer",
     )
     assert held.component == "flexspline"

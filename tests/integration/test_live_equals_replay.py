@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from tests.hd_monitor.offline import recordings as rec
 
-from hd_monitor.diagnosis.status import status_of
+from hd_monitor.diagnosis.status import Status, input_status_of, status_of
 from hd_monitor.offline.bag import Bag
 from hd_monitor.offline.parameters import load_parameters
 from hd_monitor.offline.plan import Request, plan
@@ -16,7 +16,7 @@ from hd_monitor.offline.replay import replay
 from hd_monitor.settings import split_joints
 from hd_monitor.sources import Source
 
-from .conftest import MONITOR, RIG, Bench, TorqueSensor, arguments_of
+from .conftest import MONITOR, RIG, Bench, Shown, TorqueSensor, arguments_of
 
 pytestmark = pytest.mark.ros
 
@@ -85,6 +85,10 @@ class Recorder:
         return path
 
 
+def plain(status: Shown | Status) -> tuple[int, str, str, dict[str, str]]:
+    return status.level, status.message, status.hardware_id, dict(status.values)
+
+
 @pytest.mark.parametrize(
     ("source", "publish", "load"),
     [("block", "block", "auto"), ("accel_stamped", "samples", "auto"), ("block", "block", "wrench")],
@@ -110,8 +114,8 @@ def test_every_live_status_is_replayed_value_by_value(
     # on one topic perhaps seconds later than on the other; the node then rightly gives up waiting, of which a recording
     # made elsewhere knows nothing. So the rig starts when monitor and recorder know all publishers.
     bench.until(recorder.matched, "the rig's publishers")
-    bench.until_status(
-        lambda s: s.message.count("but sends nothing") == len(sources), "a monitor that knows all publishers"
+    bench.until_input(
+        lambda s: s.values["reason"].count("but sends nothing") == len(sources), "a monitor that knows all publishers"
     )
     recorder.open_gate()
 
@@ -121,23 +125,19 @@ def test_every_live_status_is_replayed_value_by_value(
         return "has ended" in rig.output
 
     bench.until(ended, "the end of the programme")
-    seen = len(bench.statuses)
-    bench.until(lambda: any(s.fault_code == "HD_INPUT_LOST" for s in bench.statuses[seen:]), "the end of the data")
+    bench.until(lambda: bench.inputs[-1].fault_code == "HD_INPUT_LOST", "the end of the data")
     recorder.drain()
 
-    # What the node says by its own clock, before data came and after it ended, is not a verdict on data.
-    live = [
-        (status.level, status.message, status.hardware_id, status.values)
-        for status in bench.statuses
-        if status.fault_code != "HD_INPUT_LOST" and status.number("joint states") > 0
-    ]
+    # What the node says by its own clock, before data came and after it ended, is of its inputs alone.
+    pairs = list(zip(bench.statuses, bench.inputs, strict=True))
+    live = [(plain(reducer), plain(inputs)) for reducer, inputs in pairs if inputs.fault_code == "HD_INPUT_OK"]
     with Bag(recorder.write(tmp_path / "bag")) as bag:
         plans = plan(bag, Request(parameters=load_parameters(parameters)))
-        said = [status_of(s.assessment, s.plan.joint) for s in replay(bag, plans)]
-    replayed = [(status.level, status.message, status.hardware_id, dict(status.values)) for status in said]
+        said = [(s.assessment, s.plan.joint) for s in replay(bag, plans)]
+    replayed = [(plain(status_of(*one)), plain(input_status_of(*one))) for one in said]
 
-    assert live[-1][3]["torque source"] == ("wrench" if load == "wrench" else "effort")
-    assert len({status[3]["samples"] for status in live}) >= 3, "too few different statuses to compare"
+    assert live[-1][0][3]["torque source"] == ("wrench" if load == "wrench" else "effort")
+    assert len({reducer[3]["samples"] for reducer, _ in live}) >= 3, "too few different statuses to compare"
     # The node shows the newest assessment once a second, so that several may pass between two statuses: each shown
     # one must be among the replayed, in the same order.
     place = 0
@@ -145,3 +145,8 @@ def test_every_live_status_is_replayed_value_by_value(
         assert status in replayed[place:], f"live status without its like from place {place} on: {status}"
         place = replayed.index(status, place)
     assert live[-1] == replayed[-1]
+
+    level, message, serial, values = plain(bench.statuses[-1])
+    assert (level, message, serial) == replayed[-1][0][:3], "the verdict did not outlive the end of the data"
+    assert float(values["evidence age (s)"]) > 0.0
+    assert {key: replayed[-1][0][3][key] for key in values} | {"evidence age (s)": values["evidence age (s)"]} == values

@@ -54,13 +54,13 @@ def test_two_joints_with_different_reducers(bench: Bench, peer: Any) -> None:
 
 
 def test_one_joint_without_input_leaves_the_other_alone(bench: Bench) -> None:
-    bench.monitor("joints:=[shoulder, elbow]", "shoulder.input.timeout:=2.0")
+    bench.monitor("joints:=[shoulder, elbow]", "shoulder.input.startup_timeout:=2.0")
     rig_of(bench, "elbow", "defect:=flexspline")
     assert of(bench, "elbow").component == "flexspline"
-    lost = bench.until_status(
+    lost = bench.until_input(
         lambda s: s.values["joint"] == "shoulder" and s.fault_code == "HD_INPUT_LOST", "the other's lost input"
     )
-    assert "/shoulder/torsional_acceleration/block" in lost.message
+    assert "/shoulder/torsional_acceleration/block" in lost.values["reason"]
 
 
 def test_sensorless_joint_beside_one_with_a_sensor(bench: Bench, peer: Any) -> None:

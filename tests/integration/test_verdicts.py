@@ -54,14 +54,15 @@ def test_every_status_of_a_run_is_complete(bench: Bench) -> None:
     bench.monitor("reducer.serial:=HD-0042")
     bench.rig("defect:=flexspline", *QUICK)
     bench.until_status(settled, "a settled verdict")
-    known = bench.statuses[-1].values
-    for status in bench.statuses:
-        assert status.hardware_id == "HD-0042"  # a first status without it would make a second row in viewers
-        assert set(status.values) <= set(known)  # numbers are left out while unknown
-        for key in ("samples", *status.values):
-            assert is_number(status.values[key]) == is_number(known[key]), key
-        assert status.level in (0, 1, 2)
-        assert status.message
+    for statuses, always in ((bench.statuses, ("samples", "gaps")), (bench.inputs, ("samples", "joint states"))):
+        known = statuses[-1].values
+        for status in statuses:
+            assert status.hardware_id == "HD-0042"  # a first status without it would make a second row in viewers
+            assert set(status.values) <= set(known)  # numbers are left out while unknown
+            for key in (*always, *status.values):
+                assert is_number(status.values[key]) == is_number(known[key]), key
+            assert status.level in (0, 1, 2)
+            assert 0 < len(status.message) <= 128  # more is not shown by ros2 topic echo
 
 
 def test_spectrum_and_rms_curve_come_in_the_contracts_layout(bench: Bench, peer: Any) -> None:

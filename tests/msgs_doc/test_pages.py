@@ -1,6 +1,7 @@
 """The pages of msgs_doc say what the code does."""
 
 import re
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -9,7 +10,8 @@ import pytest
 
 from hd_monitor import contract
 from hd_monitor.assessment import Assessment
-from hd_monitor.diagnosis.status import status_of
+from hd_monitor.diagnosis.inputs import InputCode
+from hd_monitor.diagnosis.status import Status, input_status_of, status_of
 from hd_monitor.diagnosis.verdict import Component, FaultCode
 from hd_monitor.identification.result import Identification
 from hd_monitor.model import ParametricModel, StiffnessSeries
@@ -24,8 +26,8 @@ DIAGNOSTICS = (PAGES / "diagnostics.md").read_text(encoding="utf-8")
 TOPICS = (PAGES / "topics.md").read_text(encoding="utf-8")
 
 
-def documented_keys() -> list[str]:
-    table = DIAGNOSTICS.partition("## Values")[2].partition("## Fault codes")[0]
+def documented_keys(subject: str) -> list[str]:
+    table = DIAGNOSTICS.partition(f"## Values of the {subject}'s status")[2].partition("\n## ")[0]
     cells = [line.split("|")[1] for line in table.splitlines() if line.startswith("| `")]
     return [key for cell in cells for key in re.findall(r"`([^`]+)`", cell)]
 
@@ -47,28 +49,56 @@ def everything_known() -> Assessment:
     )
     nothing = Monitor(JointSettings.from_mapping()).silence(0)
     quality = replace(nothing.quality, rate=1000.0)
-    extra = (("internal errors", "1"), ("evidence age (s)", "60"))
-    return replace(nothing, identification=found, quality=quality, speed=850.0, rms=1.0, extra=extra)
+    return replace(
+        nothing,
+        evidence_end=0,
+        identification=found,
+        quality=quality,
+        speed=850.0,
+        rms=1.0,
+        extra=(("internal errors", "1"),),
+    )
+
+
+def relative(assessment: Assessment) -> Assessment:
+    assert assessment.identification is not None
+    return replace(assessment, identification=replace(assessment.identification, relative=True))
+
+
+def keys_of(status: Status) -> list[str]:
+    return [key for key, _ in status.values]
 
 
 def test_every_key_of_a_status_is_documented_in_its_order() -> None:
-    keys = [key for key, _ in status_of(everything_known(), "joint").values]
-    assert set(keys) == set(documented_keys())
-    assert [key for key in keys if "std" not in key] == [key for key in documented_keys() if "std" not in key]
+    assert keys_of(input_status_of(everything_known(), "joint")) == documented_keys("input")
+    documented, known = documented_keys("reducer"), everything_known()
+    for assessment, other in ((known, "share (%)"), (relative(known), "index (%)")):
+        keys = keys_of(status_of(assessment, "joint"))
+        expected = [key for key in documented if not key.endswith((other, other.replace(" (", " std (")))]
+        assert sorted(keys) == sorted(expected)
+        assert [key for key in keys if "std" not in key] == [key for key in expected if "std" not in key]
 
 
-def test_a_key_that_holds_a_number_is_left_out_while_it_is_unknown() -> None:
-    known = dict(status_of(everything_known(), "joint").values)
-    unknown = dict(status_of(Monitor(JointSettings.from_mapping()).silence(0), "joint").values)
+def test_shares_are_not_called_indexes() -> None:
+    shares = dict(status_of(relative(everything_known()), "joint").values)
+    assert float(shares["flexspline share (%)"]) == pytest.approx(99.944, abs=1e-3)
+    assert float(shares["circular spline share (%)"]) == pytest.approx(3.331, abs=1e-3)
+    assert float(shares["flexspline share std (%)"]) == pytest.approx(0.333, abs=1e-3)
+
+
+@pytest.mark.parametrize("write", [status_of, input_status_of])
+def test_a_key_that_holds_a_number_is_left_out_while_it_is_unknown(write: Callable[[Assessment, str], Status]) -> None:
+    known = dict(write(everything_known(), "joint").values)
+    unknown = dict(write(Monitor(JointSettings.from_mapping()).silence(0), "joint").values)
     numbers = {key for key, value in known.items() if value.replace(".", "", 1).isdigit()}
-    left_out = {"speed (rpm)", "unstable from (rpm)", "flexspline index (%)", "sampling rate (Hz)"}
-    assert left_out <= numbers - set(unknown)
+    left_out = {"speed (rpm)", "unstable from (rpm)", "flexspline index (%)", "evidence age (s)", "sampling rate (Hz)"}
+    assert left_out & set(known) <= numbers - set(unknown)
     assert all(float(value) >= 0.0 for key, value in unknown.items() if key in numbers)
     assert set(known) - numbers <= set(unknown)
 
 
-@pytest.mark.parametrize("code", list(FaultCode))
-def test_every_fault_code_is_documented(code: FaultCode) -> None:
+@pytest.mark.parametrize("code", [*FaultCode, *InputCode])
+def test_every_fault_code_is_documented(code: FaultCode | InputCode) -> None:
     assert f"`{code.value}`" in DIAGNOSTICS.partition("## Fault codes")[2]
 
 

@@ -145,8 +145,8 @@ FAULTS: dict[str, Fault] = {
     "half lost": Fault(fault="half of the blocks lost", rig={"transport.loss": 0.5}, cause="to be confirmed"),
     "duplicates": Fault(fault="a fifth of the blocks sent twice", rig={"transport.duplicates": 0.2}),
     "late": Fault(fault="a tenth of the blocks overtaken by later ones", rig={"transport.late": 0.1}),
-    "unplugged": Fault(fault="sensor unplugged after 6 s", blocks=until(6.0, 20.0), cause="No vibration signal for"),
-    "driver ends": Fault(fault="joint states end after 6 s", joints=until(6.0, 100.0), cause="No joint states for"),
+    "unplugged": Fault(fault="sensor unplugged after 6 s", blocks=until(6.0, 20.0), cause="No vibration signal"),
+    "driver ends": Fault(fault="joint states end after 6 s", joints=until(6.0, 100.0), cause="No joint states"),
     "no sensor": Fault(fault="no sensor at all", blocks=until(0.0, 20.0), cause="vibration signal"),
     "two sensors": Fault(fault="two publishers of blocks", blocks=second_publisher, cause="two publishers"),
     "half a period": Fault(

@@ -20,6 +20,7 @@ from hd_monitor.acquisition.quality import Quality
 from hd_monitor.adapters import UNNAMED_JOINT, Inputs
 from hd_monitor.assessment import Assessment
 from hd_monitor.contract import NANOSECONDS
+from hd_monitor.diagnosis.inputs import InputCode, InputState
 from hd_monitor.diagnosis.verdict import Component, Verdict
 from hd_monitor.monitor import Monitor
 from hd_monitor.offline.plan import Request
@@ -38,8 +39,9 @@ from tests.studies.fault_rows import FAULTS, Fault
 
 START = 1_700_000_000_000_000_000
 RIG = {"programme": "strokes", "duration": 12.0}
-WATCHED = {"analysis.period": 2.0}
-"""Few assessments: a fit that cannot succeed, as under a fault, costs seconds of processor time each."""
+WATCHED = {"analysis.period": 2.0, "input.timeout": 2.0, "input.startup_warning": 2.0, "input.startup_timeout": 4.0}
+"""Few assessments: a fit that cannot succeed, as under a fault, costs seconds of processor time each. And less patience
+with the inputs than by default, as the recordings are short."""
 TRUTHS = {"flexspline": Component.FLEXSPLINE, "none": Component.NONE}
 """What is right, by the rig's parameter `defect`."""
 
@@ -51,16 +53,30 @@ class Said(NamedTuple):
     """What the monitor said in the end."""
 
     verdict: Verdict
+    input: InputState
     quality: Quality
     used: int
     """Samples that the result rests on."""
     notes: Sequence[str]
     """What is wrong with the bag."""
 
+    @property
+    def reason(self) -> str:
+        """What a user reads."""
+        if self.input.code is InputCode.OK:
+            return self.verdict.reason
+        return f"{self.verdict.reason}. Input: {self.input.reason}"
+
+    @property
+    def codes(self) -> str:
+        """The verdict's code, and the input's where something is wrong with it."""
+        code = f"`{self.verdict.fault_code.value}`"
+        return code if self.input.code is InputCode.OK else f"{code}, `{self.input.code.value}`"
+
 
 def _said(assessment: Assessment, notes: Sequence[str] = ()) -> Said:
     found = assessment.identification
-    return Said(assessment.verdict, assessment.quality, found.samples if found else 0, notes)
+    return Said(assessment.verdict, assessment.input, assessment.quality, found.samples if found else 0, notes)
 
 
 def replayed(fault: Fault, defect: str) -> Said:
@@ -112,6 +128,7 @@ HEAD = """\
 Each row spoils the messages of a simulated rig in one way (12 s of strokes) and puts them through the monitor: once
 with a defective flexspline, once with a sound reducer. No row may accuse a part that is sound. Every row should name
 the right part, or be `undetermined` with the true cause; **rows in bold do not yet**, and say what is missing.
+A second code is that of the input, where it fails: a verdict that was there before stands.
 
 The page is written by `python tests/studies/faults.py > msgs_doc/faults.md`; `tests/studies/test_faults.py` runs every
 row by the name in the last column and holds this page to it. Numbers are those of one machine.
@@ -139,14 +156,14 @@ class Row:
         """Whether one of them is neither right nor undetermined with the cause."""
         fault = FAULTS[self.name]
         pairs = zip((self.worn, self.sound), TRUTHS.values(), strict=True)
-        return not all(_is_right(fault, said.verdict, truth) for said, truth in pairs)
+        return not all(_is_right(fault, said, truth) for said, truth in pairs)
 
     def line(self) -> str:
         """Write the row as a line of the page."""
         fault, quality = FAULTS[self.name], self.worn.quality
-        reason = self.worn.verdict.reason
+        reason = self.worn.reason
         if self.component[0] == TRUTHS["flexspline"] and self.component[1] == Component.UNDETERMINED:
-            reason += f". Of the sound unit: {self.sound.verdict.reason}"
+            reason += f". Of the sound unit: {self.sound.reason}"
         complaint = "" if quality.last_fault in reason else f". Last complaint: {quality.last_fault}"
         notes = "".join(f". Note: {note}" for note in self.worn.notes)
         (_, samples), *counts = quality.counts()
@@ -157,13 +174,13 @@ class Row:
             ]
         )
         title = f"**{fault.fault}**; {fault.gap}" if fault.gap else fault.fault
-        worn, sound = (said.verdict.fault_code.value for said in (self.worn, self.sound))
-        return f"| {title} | `{worn}` | `{sound}` | {reason}{complaint}{notes} | {kept} | `{self.name}` |"
+        codes = f"{self.worn.codes} | {self.sound.codes}"
+        return f"| {title} | {codes} | {reason}{complaint}{notes} | {kept} | `{self.name}` |"
 
 
-def _is_right(fault: Fault, verdict: Verdict, truth: Component) -> bool:
-    named = bool(fault.cause) and fault.cause in verdict.reason
-    return verdict.component is truth or (verdict.component is Component.UNDETERMINED and named)
+def _is_right(fault: Fault, said: Said, truth: Component) -> bool:
+    named = bool(fault.cause) and fault.cause in said.reason
+    return said.verdict.component is truth or (said.verdict.component is Component.UNDETERMINED and named)
 
 
 def row(name: str) -> Row:
@@ -182,7 +199,7 @@ def check(name: str) -> None:
     done = row(name)
     for component, truth in zip(done.component, TRUTHS.values(), strict=True):
         assert component in {truth, Component.UNDETERMINED, Component.NONE}, f"{name}: {component}, not {truth}"
-    assert done.gap == bool(FAULTS[name].gap), f"{name}: {done.worn.verdict.reason} / {done.sound.verdict.reason}"
+    assert done.gap == bool(FAULTS[name].gap), f"{name}: {done.worn.reason} / {done.sound.reason}"
     assert words_of(done.line()) in map(words_of, PAGE.read_text(encoding="utf-8").splitlines()), (
         f"msgs_doc/faults.md is not up to date: {done.line()}"
     )

@@ -1,20 +1,32 @@
-"""Which inputs of a joint are lost: the one place that decides it, whatever the clock."""
+"""Which inputs of a joint are missing: the one place that decides it, whatever the clock."""
 
-from collections.abc import Iterable
 from dataclasses import dataclass
+from enum import IntEnum
 from typing import NamedTuple
 
+from ..contract import NANOSECONDS
+from ..settings import JointSettings
 from ..sources import Quantity
 
 
-class Loss(NamedTuple):
-    """An input that is lost."""
+class Absence(IntEnum):
+    """How an input is missing; the larger, the worse."""
+
+    AWAITED = 0
+    """Nothing has come so far, as is to be expected of a system that starts."""
+    OVERDUE = 1
+    """Nothing has come for longer than ``input.startup_warning``."""
+    UNUSABLE = 2
+    """It comes, but nothing of it can be used."""
+    LOST = 3
+    """It comes no longer, or has not come within ``input.startup_timeout``."""
+
+
+class Missing(NamedTuple):
+    """An input that is missing, and how."""
 
     quantity: Quantity
-    silent: bool
-    """Whether nothing comes; otherwise messages come, but none can be used."""
-    since: int
-    """How long nothing, or nothing usable, has come [ns]."""
+    absence: Absence
 
 
 @dataclass(slots=True)
@@ -27,26 +39,21 @@ class _Heard:
 
 
 class Presence:
-    """Decides which inputs are lost: those from which nothing, or nothing usable, came for a while.
+    """Decides which of the inputs that a joint needs are missing.
 
     The monitor uses it with the clock of the stamps, the node with its own.
 
     Parameters
     ----------
-    quantities : iterable of Quantity
-        The inputs that the joint needs.
-    timeout : int
-        Silence after which an input is lost [ns].
+    settings : JointSettings
     """
 
-    def __init__(self, quantities: Iterable[Quantity], timeout: int) -> None:
-        self._timeout = timeout
-        self._heard = {quantity: _Heard() for quantity in quantities}
-
-    @property
-    def timeout(self) -> float:
-        """Silence after which an input is lost [s]."""
-        return self._timeout * 1e-9
+    def __init__(self, settings: JointSettings) -> None:
+        given = settings.input
+        self._timeout = round(given.timeout * NANOSECONDS)
+        self._startup_warning = round(given.startup_warning * NANOSECONDS)
+        self._startup_timeout = round(given.startup_timeout * NANOSECONDS)
+        self._heard = {quantity: _Heard() for quantity in settings.sources}
 
     @property
     def absent(self) -> tuple[Quantity, ...]:
@@ -61,17 +68,29 @@ class Presence:
     def note(self, quantity: Quantity, came: int, useful: int | None = None) -> None:
         """Note when an input came, and when it was usable [ns]; None: it was not."""
         if (heard := self._heard.get(quantity)) is not None:
+            if not heard.ever:  # what cannot be used yet has as much time as what has fallen silent
+                heard.useful = came
             heard.ever = True
             heard.came = came
             heard.useful = heard.useful if useful is None else useful
 
-    def losses(self, now: int) -> list[Loss]:
-        """Return the inputs that are lost at `now` [ns]."""
+    def missing(self, now: int) -> list[Missing]:
+        """Return the inputs that are missing at `now` [ns]."""
         found = []
         for quantity, heard in self._heard.items():
             if heard.came is None or heard.useful is None or heard.came > now:  # the clock has begun, or was set back
                 heard.came = heard.useful = now
-            if now - heard.useful >= self._timeout:
-                silent = now - heard.came >= self._timeout
-                found.append(Loss(quantity, silent, now - (heard.came if silent else heard.useful)))
+            absence = self._absence(heard.ever, now - heard.came, now - heard.useful)
+            if absence is not None:
+                found.append(Missing(quantity, absence))
         return found
+
+    def _absence(self, ever: bool, silent: int, useless: int) -> Absence | None:
+        """How an input is missing from which nothing, and nothing usable, has come for so long [ns]."""
+        if not ever:
+            if silent >= self._startup_timeout:
+                return Absence.LOST
+            return Absence.OVERDUE if silent >= self._startup_warning else Absence.AWAITED
+        if silent >= self._timeout:
+            return Absence.LOST
+        return Absence.UNUSABLE if useless >= self._timeout else None

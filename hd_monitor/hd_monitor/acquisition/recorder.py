@@ -239,6 +239,9 @@ class Recorder:
         if self._has_sensor:  # in a hole of its signal there is no torque that could be mixed with a measured one
             torque = self._torque_track.at(times)
             known &= np.isfinite(torque)
+        if not known.any():  # where no motion is known, nothing is said of where its torque comes from
+            self._joined = False
+            return []
         spans = [(0, values.size)] if known.all() else runs_of(known)
         torque = self._torque(torque)
         records, joined = [], self._joined
@@ -277,7 +280,7 @@ class Recorder:
         counts = {name: getattr(screened, name) for name in _FAULTS}
         worst = max(counts, key=counts.__getitem__)
         if counts[worst]:
-            fault = f"{counts[worst]} vibration samples of the last period {_FAULTS[worst]} and were left out"
+            fault = f"vibration samples of the last period {_FAULTS[worst]} and were left out"
             self.count(**counts, last_fault=fault)
 
 

@@ -32,7 +32,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--report", type=Path, metavar="DIR", help="write an HTML page with plots into this folder")
     parser.add_argument("--history", type=Path, metavar="FILE", help="write what was found to this ledger")
     parser.add_argument(
-        "--fail-on", choices=sorted(_FAIL_ON), help="exit with status 1 if a joint's last verdict is this bad or worse"
+        "--fail-on",
+        choices=sorted(_FAIL_ON),
+        help="exit with status 1 if a joint's last verdict, or the state of its inputs, is this bad or worse",
     )
 
 
@@ -111,7 +113,8 @@ def run(arguments: argparse.Namespace) -> int:
 
         page = write_report(arguments.report, outcome.content, outcome.joints, outcome.collectors)
         print(f"report: {page}", file=text)
-    worst = max(joint.last.verdict.level for joint in outcome.joints if joint.last is not None)
+    last = [joint.last for joint in outcome.joints if joint.last is not None]
+    worst = max(level for said in last for level in (said.verdict.level, said.input.level))
     return int(bool(arguments.fail_on) and worst >= _FAIL_ON[arguments.fail_on])
 
 

@@ -1,11 +1,15 @@
-"""A verdict as diagnostic status: plain words and numbers, the same for the node, the replay and the report."""
+"""An assessment as two diagnostic statuses, the reducer's and its inputs'; the same for node, replay and report."""
 
 import math
 from dataclasses import dataclass
 
 from ..assessment import Assessment
 from ..identification.result import Identification
+from ..reducer import LinePair
 from .something_else import describe_all_else
+
+LONGEST_MESSAGE = 128
+"""Characters of a string that ``ros2 topic echo`` shows before it truncates."""
 
 _NOTHING = Identification.none((), relative=False)
 """Stands in as long as nothing is identified."""
@@ -13,20 +17,26 @@ _NOTHING = Identification.none((), relative=False)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Status:
-    """What goes into a diagnostic_msgs/DiagnosticStatus, but for its name.
+    """What goes into a diagnostic_msgs/DiagnosticStatus.
 
     Attributes
     ----------
+    subject : str
+        What the status is of, as the end of its name: ``elbow reducer``.
     level : int
         0 OK, 1 WARN, 2 ERROR.
     message, hardware_id : str
+    kind : tuple of str
+        What kind of reason it gives: the sentence may change in numbers alone.
     values : tuple of (str, str)
         Keys with their units, and values: one plain number or word each; unknown numbers are left out.
     """
 
+    subject: str
     level: int
     message: str
     hardware_id: str
+    kind: tuple[str, ...]
     values: tuple[tuple[str, str], ...]
 
     def value(self, key: str) -> str:
@@ -35,12 +45,13 @@ class Status:
 
 
 def status_of(assessment: Assessment, joint: str) -> Status:
-    """Write an assessment of the joint of this name as a status."""
+    """Write what an assessment says of the reducer of the joint of this name as a status."""
     verdict, quality = assessment.verdict, assessment.quality
     found = assessment.identification or _NOTHING
-    kind = "unknown" if found is _NOTHING else "relative" if found.relative else "absolute"
+    index_kind = "unknown" if found is _NOTHING else "relative" if found.relative else "absolute"
     limits, needed = assessment.settings.diagnosis, assessment.settings.reducer.travel_to_separate(1)
-    samples, *faults = quality.counts()
+    counts = dict(quality.counts())
+    kind = tuple(blocker.code.value for blocker in found.blockers) if assessment.identification else (verdict.reason,)
     values: list[tuple[str, str | None]] = [
         ("joint", joint),
         ("component", verdict.component.value),
@@ -49,12 +60,10 @@ def status_of(assessment: Assessment, joint: str) -> Status:
         ("reason", verdict.reason),
         ("speed (rpm)", _number(assessment.speed, 1)),
         ("rms (m/s^2)", _number(assessment.rms, 4)),
-        ("flexspline index (%)", _number(100.0 * found.index.flexspline)),
-        ("flexspline index std (%)", _number(100.0 * found.index_std.flexspline)),
-        ("circular spline index (%)", _number(100.0 * found.index.circular_spline)),
-        ("circular spline index std (%)", _number(100.0 * found.index_std.circular_spline)),
+        ("evidence age (s)", _number(assessment.evidence_age, 0)),
+        *_indexes(found),
         *_errors(found),
-        ("index kind", kind),
+        ("index kind", index_kind),
         ("warn limit (%)", _number(100.0 * limits.warn_index)),
         ("error limit (%)", _number(100.0 * limits.error_index)),
         ("warn limit (arcmin)", _number(limits.warn_transmission_error)),
@@ -71,33 +80,82 @@ def status_of(assessment: Assessment, joint: str) -> Status:
         ("load fluctuation (N*m)", _number(found.load_fluctuation)),
         ("unstable from (rpm)", _number(found.critical_speed, 0)),
         ("torque source", assessment.torque_source),
-        samples,
+        *((key, counts[key]) for key in ("samples", "gaps")),
         ("samples used", str(found.samples)),
-        ("sampling rate (Hz)", _number(quality.rate or math.nan, 2)),
-        *faults,
-        ("last complaint", quality.last_fault or "none"),
         *assessment.extra,
     ]
     return Status(
+        subject=f"{joint} reducer",
         level=int(verdict.level),
-        message=verdict.reason,
+        message=shortened(verdict.reason),
         hardware_id=assessment.settings.serial,
+        kind=kind,
         values=tuple((key, value) for key, value in values if value is not None),
     )
 
 
+def input_status_of(assessment: Assessment, joint: str) -> Status:
+    """Write what an assessment says of the inputs of the joint of this name as a status."""
+    state, quality = assessment.input, assessment.quality
+    samples, *faults = quality.counts()
+    rate = _number(quality.rate or math.nan, 2)
+    return Status(
+        subject=f"{joint} input",
+        level=int(state.level),
+        message=shortened(state.reason),
+        hardware_id=assessment.settings.serial,
+        kind=(state.reason,),
+        values=(
+            ("joint", joint),
+            ("fault_code", state.code.value),
+            ("reason", state.reason),
+            samples,
+            *((("sampling rate (Hz)", rate),) if rate is not None else ()),
+            *faults,
+            ("last complaint", quality.last_fault or "none"),
+        ),
+    )
+
+
+def shortened(sentence: str) -> str:
+    """Return as many whole clauses of a sentence as a message may have; an ellipsis says that more follows.
+
+    Examples
+    --------
+    >>> shortened("Check the sensor: " + "it hears nothing of this joint, " * 4)
+    'Check the sensor: it hears nothing of this joint, it hears nothing of this joint, it hears nothing of this joint …'
+    """
+    if len(sentence) <= LONGEST_MESSAGE:
+        return sentence
+    room = sentence[: LONGEST_MESSAGE - 2]
+    ends = (max(map(room.rfind, marks)) for marks in ((", ", "; ", ": ", " ("), (" ",)))
+    end = next((end for end in ends if end >= LONGEST_MESSAGE // 2), len(room))
+    return f"{room[:end]} …"
+
+
+def _indexes(found: Identification) -> list[tuple[str, str | None]]:
+    """Indexes, or shares, whose squares add up to one, where the sizes mean nothing."""
+    word, size = ("share", math.hypot(*found.index) or math.nan) if found.relative else ("index", 1.0)
+    return _pairs(f"{word}%s (%%)", _scaled(found.index, 100.0 / size), _scaled(found.index_std, 100.0 / size))
+
+
+def _scaled(pair: LinePair, factor: float) -> LinePair:
+    return LinePair(*(factor * value for value in pair))
+
+
 def _errors(found: Identification) -> list[tuple[str, str | None]]:
     """Transmission errors, where they are estimated."""
-    error, std = found.transmission_error, found.transmission_error_std
-    if error is None or std is None:
+    if found.transmission_error is None or found.transmission_error_std is None:
         return []
+    return _pairs("transmission error%s (arcmin)", found.transmission_error, found.transmission_error_std)
+
+
+def _pairs(key: str, values: LinePair, stds: LinePair) -> list[tuple[str, str | None]]:
+    """Write a value of each spline and its standard deviation; the key has a place for the latter's name."""
     return [
-        entry
+        (f"{part.replace('_', ' ')} {key % word}", _number(getattr(pair, part)))
         for part in ("flexspline", "circular_spline")
-        for entry in (
-            (f"{part.replace('_', ' ')} transmission error (arcmin)", _number(getattr(error, part))),
-            (f"{part.replace('_', ' ')} transmission error std (arcmin)", _number(getattr(std, part))),
-        )
+        for word, pair in (("", values), (" std", stds))
     ]
 
 

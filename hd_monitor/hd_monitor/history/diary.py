@@ -8,8 +8,14 @@ from ..assessment import Assessment
 from ..diagnosis.verdict import FaultCode
 from .entry import Entry, Kind
 
-_NO_VERDICT = {FaultCode.WAITING, FaultCode.INPUT_LOST, FaultCode.INPUT_INVALID, FaultCode.INTERNAL_ERROR}
+_NO_VERDICT = {FaultCode.WAITING, FaultCode.INTERNAL_ERROR}
 """Codes that say nothing of the reducer: they are no transitions of its history."""
+
+
+def _is_news(assessment: Assessment) -> bool:
+    """Whether it says something of the reducer, on evidence of this run."""
+    old = assessment.recalled or assessment.input.failed
+    return assessment.verdict.fault_code not in _NO_VERDICT and not old
 
 
 class Diary:
@@ -34,9 +40,9 @@ class Diary:
     def note(self, assessment: Assessment) -> Entry | None:
         """Take the next assessment; return the entry that it is worth, if any."""
         self._add_motion(assessment)
-        verdict = assessment.verdict
-        if verdict.fault_code in _NO_VERDICT:
+        if not _is_news(assessment):
             return None
+        verdict = assessment.verdict
         shown = verdict.component, verdict.level, verdict.fault_code
         changed, self._shown = shown != self._shown, shown
         if changed:
@@ -45,7 +51,7 @@ class Diary:
 
     def close(self, assessment: Assessment) -> Entry | None:
         """Return the entry of what followed the last one, if the joint moved since."""
-        if assessment.verdict.fault_code in _NO_VERDICT or not self._seconds:
+        if not self._seconds or not _is_news(assessment):
             return None
         return self._entry(assessment, Kind.EVIDENCE)
 

@@ -47,6 +47,17 @@ def verdict_entry(assessment: Assessment) -> dict[str, Any]:
     }
 
 
+def input_entry(assessment: Assessment) -> dict[str, Any]:
+    """Write whether the inputs arrived."""
+    state = assessment.input
+    return {
+        "level": int(state.level),
+        "level_name": Level(state.level).name,
+        "fault_code": state.code.value,
+        "reason": state.reason,
+    }
+
+
 def line_entries(found: Identification | None) -> list[dict[str, Any]]:
     """Write the amplitudes of the characteristic lines and their standard deviations, in the signal's unit."""
     return [
@@ -75,7 +86,7 @@ class JointResult:
             self.last = said.assessment
         if not said.last or not self.timeline:
             entry = {"stamp": said.assessment.stamp, "time": said.assessment.stamp / NANOSECONDS}
-            entry |= verdict_entry(said.assessment)
+            entry |= verdict_entry(said.assessment) | {"input": said.assessment.input.code.value}
             entry |= {"speed_rpm": said.assessment.speed, "rms": said.assessment.rms}
             self.timeline.append(plain(entry))
 
@@ -120,6 +131,7 @@ class JointResult:
         entry = {
             "joint": plan.joint,
             "verdict": verdict_entry(last),
+            "input": input_entry(last),
             "lines": line_entries(last.identification),
             "torque_shares": [
                 asdict(row) | {"reading": row.reading} for row in getattr(last.identification, "torque_shares", ())

@@ -52,6 +52,8 @@ def summarise(result: JointResult) -> str:
         f"{result.plan.joint}: {Level(verdict.level).name}, {verdict.component.value} ({verdict.fault_code.value})",
         f"  {verdict.reason}",
     ]
+    if last.input.level > Level.OK:
+        lines.append(f"  input: {Level(last.input.level).name}, {last.input.code.value}: {last.input.reason}")
     if found is not None and math.isfinite(found.index_std.flexspline):
         kind = "relative index" if found.relative else "index"
         index, std, limits = found.index, found.index_std, last.settings.diagnosis

@@ -4,25 +4,26 @@ import traceback
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
-from ..acquisition.presence import Loss, Presence
+from ..acquisition.presence import Presence
 from ..adapters import Inputs
 from ..assessment import Assessment
 from ..contract import NANOSECONDS
-from ..diagnosis.absence import (
-    NO_SIMULATED_TIME,
-    WAITING,
+from ..diagnosis.absence import internal_error
+from ..diagnosis.inputs import (
+    ARRIVING,
     Explain,
-    internal_error,
-    lost_by_clock,
-    remembered,
+    InputCode,
+    InputState,
+    describe_inputs,
+    no_simulated_time,
     stamped_by_two_clocks,
 )
-from ..diagnosis.status import Status, status_of
-from ..diagnosis.verdict import FaultCode, Verdict
+from ..diagnosis.status import Status, input_status_of, status_of
+from ..diagnosis.verdict import Level
 from ..errors import HdMonitorError, ParameterError
 from ..evidence import new_identifier
 from ..history.entry import Kind
-from ..monitor import Monitor
+from ..monitor import Monitor, Recalled
 from ..orders.zoom import ZoomSpectrum
 from ..settings import JointSettings
 from ..sources import Quantity
@@ -39,10 +40,9 @@ class JointWatch:
     now : int
         The node's time [ns]; silence counts from here.
     explain : callable
-        Asked where an input is lost.
+        Asked where an input is missing.
     explain_crowd : callable
-        Asked which inputs have several publishers; the answer is added to what the status says.
-
+        Asked which inputs have several publishers; the answer is added to what the input's status says.
     memory : Memory, optional
         What is remembered of earlier runs.
     date : callable
@@ -51,7 +51,7 @@ class JointWatch:
     Attributes
     ----------
     present : Assessment
-        What the status says now; from the start that it waits.
+        What the statuses say now; from the start that they wait.
     errors : int
         Errors of the core so far.
     last_error : str
@@ -74,25 +74,28 @@ class JointWatch:
         self._explain_crowd = explain_crowd
         self._memory = memory
         self._date = date
-        self._remembered = memory.last if memory is not None else None
         self.errors = 0
         self.last_error = ""
-        self._presence = Presence(settings.sources, round(settings.input.timeout * NANOSECONDS))
         self._assessed = False
+        self._ahead: int | None = None  # ns by which the messages' clock is ahead of the node's
         self._start()
         self.wake(now)
-        self.present = self._recalled(self._other(now, WAITING))
+        self._input = self._describe(now)
+        self.present = self._quiet(now, self._input)
         self._told = self._key()
-        self._transitions: list[Status] = []
+        self._transitions: list[tuple[Status, Status]] = []
 
     def _start(self) -> None:
-        known = self._memory.evidence if self._memory is not None else ()
-        self._monitor = Monitor(self.settings, new_identifier(self.settings, known=known))
+        known, last = (self._memory.evidence, self._memory.last) if self._memory is not None else ((), None)
+        recalled = Recalled(last.verdict, round(last.time * NANOSECONDS)) if last and last.verdict else None
+        self._monitor = Monitor(self.settings, new_identifier(self.settings, known=known), recalled)
         self._inputs = Inputs(self.joint, self.settings, self._monitor)
 
     def wake(self, now: int) -> None:
-        """Count silence from `now` [ns] on: the node has only just begun to listen."""
+        """Await the first data from `now` [ns] on: the node has only just begun to listen."""
+        self._presence = Presence(self.settings)
         self._presence.start(now or None)
+        self._looks_without_clock = 0
 
     # What the node calls --------------------------------------------------------------------------------------------
 
@@ -110,17 +113,18 @@ class JointWatch:
                 self._monitor.baseline = self._memory.baseline
             assessments = self._monitor.advance()
             for assessment in assessments:
+                self._ahead = assessment.stamp - now if now else None
                 self._show(self._explained(assessment, now))
                 if self._memory is not None:
                     self._memory.note(assessment)
         except Exception as error:
-            self._fail(error, now)
+            self._fail(error)
             return False
         self._assessed = self._assessed or bool(assessments)
         return bool(assessments)
 
     def check(self, now: int) -> None:
-        """Look for inputs that are silent or useless; to be called once a second.
+        """Look for inputs that are missing; to be called once a second.
 
         A time `now` of 0 says that a simulated clock is used but has not begun.
         """
@@ -128,19 +132,18 @@ class JointWatch:
             self._assessed = False
             return
         try:
-            if not now:
-                self._show(self._other(now, NO_SIMULATED_TIME))
-            elif losses := self._presence.losses(now):
-                self._show(self._other(now, self._describe(losses)))
+            self._looks_without_clock += not now
+            if (state := self._describe(now)).code is not InputCode.OK:
+                self._show(self._quiet(now, state))
         except Exception as error:
-            self._fail(error, now)
+            self._fail(error)
 
-    def status(self) -> Status:
-        """Write what is known now."""
-        return status_of(self.present, self.joint)
+    def statuses(self) -> tuple[Status, Status]:
+        """Write what is known now of the reducer and of its inputs."""
+        return status_of(self.present, self.joint), input_status_of(self.present, self.joint)
 
-    def take_transitions(self) -> list[Status]:
-        """Return the statuses that named another part, level or code than the one before, oldest first, once."""
+    def take_transitions(self) -> list[tuple[Status, Status]]:
+        """Return the statuses that named another part, level or code than those before, oldest first, once."""
         transitions, self._transitions = self._transitions, []
         return transitions
 
@@ -151,7 +154,7 @@ class JointWatch:
         except HdMonitorError:  # the stretch holds no number, say: no picture, but no reason to restart
             return None
         except Exception as error:
-            self._fail(error, self.present.stamp)
+            self._fail(error)
             return None
 
     def change_limits(self, settings: JointSettings) -> None:
@@ -166,7 +169,7 @@ class JointWatch:
     def reset(self) -> None:
         """Forget all evidence: the reducer was exchanged."""
         self._monitor.reset()
-        self._remembered = None
+        self._show(replace(self._monitor.silence(self.present.stamp), input=self._input))
         self.mark(Kind.EXCHANGE)
 
     def set_baseline(self) -> None:
@@ -187,55 +190,52 @@ class JointWatch:
 
     # ----------------------------------------------------------------------------------------------------------------
 
-    def _describe(self, losses: Sequence[Loss]) -> Verdict:
+    def _describe(self, now: int) -> InputState:
+        """Say which inputs are missing by the node's time [ns], and why by the ROS graph."""
+        if not now:
+            patient = self._looks_without_clock < self.settings.input.startup_warning
+            return no_simulated_time(Level.OK if patient else Level.WARN)
+        if not (missing := self._presence.missing(now)):
+            return ARRIVING
         fault = self._monitor.silence(0).quality.last_fault
-        return lost_by_clock(losses, self._monitor.newest_stamps, fault, self._explain)
+        return describe_inputs(missing, fault, explain=self._explain, stamps=self._monitor.newest_stamps)
 
     def _explained(self, assessment: Assessment, now: int) -> Assessment:
-        """Add to a lost input what the monitor, which sees stamps only, cannot know."""
-        if assessment.verdict.fault_code is not FaultCode.INPUT_LOST:
+        """Add to a missing input what the monitor, which sees stamps only, cannot know."""
+        if assessment.input.code in (InputCode.OK, InputCode.INVALID):
             return assessment
-        stamps = self._monitor.newest_stamps
-        if losses := self._presence.losses(now):
-            return replace(assessment, verdict=self._describe(losses))
-        if len(stamps) > 1 and max(stamps.values()) - min(stamps.values()) >= self._presence.timeout * NANOSECONDS:
-            return replace(assessment, verdict=stamped_by_two_clocks(stamps))
+        if (state := self._describe(now)).code is not InputCode.OK:
+            return replace(assessment, input=state)
+        stamps, longest = self._monitor.newest_stamps, self.settings.input.timeout * NANOSECONDS
+        if len(stamps) > 1 and max(stamps.values()) - min(stamps.values()) >= longest:
+            return replace(assessment, input=stamped_by_two_clocks(stamps))
         return assessment
 
-    def _other(self, now: int, verdict: Verdict) -> Assessment:
-        """Make an assessment that the monitor knows nothing of, with all that it knows."""
-        return replace(self._monitor.silence(now), verdict=verdict)
-
-    def _recalled(self, assessment: Assessment) -> Assessment:
-        """Put the last verdict of an earlier run, with its age, in the place of none yet."""
-        known = self._remembered
-        if known is None or known.verdict is None or assessment.verdict.fault_code is not FaultCode.WAITING:
-            return assessment
-        age = max(self._date() - known.time, 0.0)
-        verdict = remembered(known.verdict, age, assessment.verdict)
-        return replace(assessment, verdict=verdict, extra=(*assessment.extra, ("evidence age (s)", f"{age:.0f}")))
+    def _quiet(self, now: int, state: InputState) -> Assessment:
+        """Make the assessment of a time in which the monitor heard nothing new, with all that it knows."""
+        stamp = round(self._date() * NANOSECONDS) if self._ahead is None else now + self._ahead
+        return replace(self._monitor.silence(stamp), input=state)
 
     def _show(self, assessment: Assessment) -> None:
-        if assessment.identification is not None and assessment.verdict.fault_code is not FaultCode.WAITING:
-            self._remembered = None
-        assessment = self._recalled(assessment)
+        self._input = assessment.input
         if self.errors:
             assessment = replace(assessment, extra=(*assessment.extra, ("internal errors", str(self.errors))))
         if crowd := self._explain_crowd():
-            reason = f"{assessment.verdict.reason}; {crowd}"
-            assessment = replace(assessment, verdict=replace(assessment.verdict, reason=reason))
+            state = assessment.input
+            assessment = replace(assessment, input=replace(state, reason=f"{state.reason}; {crowd}"))
         self.present = assessment
         if (key := self._key()) != self._told:
             self._told = key
-            self._transitions.append(self.status())
+            self._transitions.append(self.statuses())
 
     def _key(self) -> tuple[object, ...]:
-        verdict = self.present.verdict
-        return verdict.level, verdict.component, verdict.fault_code
+        verdict, state = self.present.verdict, self.present.input
+        return verdict.level, verdict.component, verdict.fault_code, state.level, state.code
 
-    def _fail(self, error: Exception, now: int) -> None:
+    def _fail(self, error: Exception) -> None:
         """Restart this joint after an error of the core, and say so: the other joints must not suffer."""
         self.errors += 1
         self.last_error = traceback.format_exc()
         self._start()
-        self._show(self._other(now, internal_error(error)))
+        nothing = self._monitor.silence(self.present.stamp)
+        self._show(replace(nothing, verdict=internal_error(error), input=self._input))

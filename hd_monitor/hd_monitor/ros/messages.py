@@ -14,11 +14,11 @@ from ..orders.rms_curve import SpeedBin
 from ..orders.zoom import ZoomSpectrum
 
 
-def diagnostic_status(status: Status, name: str) -> DiagnosticStatus:
-    """Write a status as a message of the name given."""
+def diagnostic_status(status: Status, node: str) -> DiagnosticStatus:
+    """Write a status of the node of this fully qualified name as a message."""
     return DiagnosticStatus(
         level=bytes([status.level]),  # an int is accepted too, but serialised as garbage
-        name=name,
+        name=f"{node}: {status.subject}",
         message=status.message,
         hardware_id=status.hardware_id,
         values=[KeyValue(key=key, value=value) for key, value in status.values],

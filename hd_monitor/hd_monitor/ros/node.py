@@ -1,5 +1,6 @@
 """The node ``hd_monitor_node``: any number of joints, from their topics to /diagnostics."""
 
+from collections.abc import Sequence
 from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray
@@ -9,7 +10,6 @@ from std_srvs.srv import Trigger
 
 from .. import contract
 from ..diagnosis.status import Status
-from ..diagnosis.verdict import Level
 from ..errors import HdMonitorError
 from ..settings import JointSettings
 from ..sources import JOINT_STATES
@@ -17,6 +17,7 @@ from .joint_channel import JointChannel, queue_depth_of
 from .managed_node import ManagedNode, logged, run
 from .messages import diagnostic_status
 from .parameters import JointParameters
+from .status_log import StatusLog
 from .subscriptions import DrainedSubscription
 
 NAME = "hd_monitor_node"
@@ -49,7 +50,7 @@ class HdMonitorNode(ManagedNode):
         self._motion: DrainedSubscription | None = None
         self._own_timers: list[Any] = []
         self._own_services: list[Any] = []
-        self._logged: set[str] = set()
+        self._log = StatusLog(self.get_logger())
         self._parameters_of_joints = JointParameters(self, self._change_limits)
         self._diagnostics = self.create_lifecycle_publisher(DiagnosticArray, contract.DIAGNOSTICS, QoSProfile(depth=10))
         if self.get_parameter("autostart").value:
@@ -135,21 +136,20 @@ class HdMonitorNode(ManagedNode):
         now = self._now()
         for channel in self._channels:
             channel.feed(motion, now)
-            for status in self._log_news(channel):
-                self._publish([(channel, status)])
+            self._tell_news(channel)
 
     def _publish_all(self) -> None:
         now = self._now()
         for channel in self._channels:
             channel.watch.check(now)
-            self._log_news(channel)
-        self._publish([(channel, channel.watch.status()) for channel in self._channels])
+            self._tell_news(channel)
+        statuses = [status for channel in self._channels for status in channel.watch.statuses()]
+        self._publish(statuses)
+        self._log.note(statuses, self._steady.now().nanoseconds)
 
-    def _publish(self, statuses: list[tuple[JointChannel, Status]]) -> None:
-        """Publish one status each of some joints."""
-        name = self.get_fully_qualified_name()
-        bundle = [diagnostic_status(status, f"{name}: {channel.joint} reducer") for channel, status in statuses]
-        message = DiagnosticArray(status=bundle)
+    def _publish(self, statuses: Sequence[Status]) -> None:
+        node = self.get_fully_qualified_name()
+        message = DiagnosticArray(status=[diagnostic_status(status, node) for status in statuses])
         message.header.stamp = self.get_clock().now().to_msg()
         self._diagnostics.publish(message)
 
@@ -158,25 +158,12 @@ class HdMonitorNode(ManagedNode):
         simulated = self.get_parameter("use_sim_time").value
         return int((self.get_clock() if simulated else self._steady).now().nanoseconds)
 
-    def _log_transition(self, channel: JointChannel, status: Status) -> None:
-        text = f"{channel.joint}: {status.message}"
-        # A logger's line of code keeps its severity: one call for all three would raise.
-        if status.level == Level.OK:
-            self.get_logger().info(text)
-        elif status.level == Level.WARN:
-            self.get_logger().warning(text)
-        else:
-            self.get_logger().error(text)
-
-    def _log_news(self, channel: JointChannel) -> list[Status]:
-        """Log and return a joint's transitions, and log a traceback the first time it appears."""
-        transitions = channel.watch.take_transitions()
-        for status in transitions:
-            self._log_transition(channel, status)
-        if channel.watch.last_error and channel.watch.last_error not in self._logged:
-            self._logged.add(channel.watch.last_error)
-            self.get_logger().error(f"{channel.joint}: {channel.watch.last_error}")
-        return transitions
+    def _tell_news(self, channel: JointChannel) -> None:
+        """Publish and log a joint's transitions at once, and log a traceback the first time it appears."""
+        for statuses in channel.watch.take_transitions():
+            self._publish(statuses)
+            self._log.note(statuses, self._steady.now().nanoseconds)
+        self._log.note_error(channel.joint, channel.watch.last_error)
 
     # Requests -------------------------------------------------------------------------------------------------------
 

@@ -32,7 +32,20 @@ class InputSettings:
     joint_name: str = plain(
         "", "the joint's name in joint_states; empty: the name in `joints`, or the only joint there is"
     )
-    timeout: float = number(2.0, "s", 0.05, 3600.0, "silence after which an input counts as lost")
+    timeout: float = number(
+        5.0,
+        "s",
+        0.05,
+        3600.0,
+        "silence after which an input that has come counts as lost; a reliable topic may pause for the 3 s after which "
+        "Fast DDS repeats a lost datagram",
+    )
+    startup_warning: float = number(
+        10.0, "s", 0.0, 3600.0, "time without the first data of an input after which its status warns"
+    )
+    startup_timeout: float = number(
+        30.0, "s", 0.05, 3600.0, "time without the first data of an input after which it counts as lost"
+    )
     queue_seconds: float = number(
         5.0,
         "s",

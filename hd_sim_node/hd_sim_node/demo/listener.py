@@ -32,10 +32,11 @@ def listening(domain: int) -> Iterator[Listen]:
     views: list[View] = []
 
     def receive(message: DiagnosticArray) -> None:
+        # The reducer's keys over those of its input, which has the counters
+        values = {pair.key: pair.value for status in reversed(message.status) for pair in status.values}
         for status in message.status:
             if status.name.endswith(" reducer"):
                 level = Level(int.from_bytes(status.level, "little"))
-                values = {pair.key: pair.value for pair in status.values}
                 views.append(View(name=status.name, level=level, message=status.message, values=values))
 
     def listen(seconds: float) -> View | None:

@@ -16,7 +16,7 @@ from ..parameters import NODE_PARAMETERS
 from ..settings import RigSettings, pick
 from .screen import View
 
-INPUT_TIMEOUT = 3.0
+INPUT_TIMEOUT = 5.0
 """Seconds of real time after which the monitor counts an input as lost."""
 
 DOMAINS = range(1, 102)  # above them, DDS ports run into the system's ephemeral ones

@@ -31,9 +31,14 @@ class View:
         except (KeyError, ValueError):
             return None
 
+    @property
+    def reading(self) -> str:
+        """What is shown of a spline: its index, or its share where the sizes mean nothing."""
+        return "share" if self.values.get("index kind") == "relative" else "index"
+
     def index(self, spline: str) -> str:
-        """Write a spline's index with its standard deviation."""
-        value, std = self.number(f"{spline} index (%)"), self.number(f"{spline} index std (%)")
+        """Write a spline's index, or share, with its standard deviation."""
+        value, std = (self.number(f"{spline} {self.reading}{word} (%)") for word in ("", " std"))
         if value is None or std is None:
             return "unknown"
         return f"{value:.2f} ± {std:.2f} %" if std >= 0.005 else f"{value:.2f} ± <0.01 %"
@@ -112,7 +117,7 @@ class Screen:
             + ("" if rms is None else f"   rms {rms:.2f} m/s²")
         ]
         for spline in _SPLINES:
-            index = view.number(f"{spline} index (%)") or 0.0
+            index = view.number(f"{spline} {view.reading} (%)") or 0.0
             lines.append(f"  {spline:15}  {self._bar(index / top)}  {view.index(spline)}")
         if warn is not None and error is not None:
             # The mark of the lower limit has its label on the left, that of the higher one on the right.

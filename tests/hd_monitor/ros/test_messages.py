@@ -16,8 +16,16 @@ def test_a_status_survives_the_wire(level: int) -> None:
 
     from hd_monitor.ros.messages import diagnostic_status
 
-    status = Status(level=level, message="±", hardware_id="A1", values=(("speed (rpm)", "850.0"),))
-    message = diagnostic_status(status, "/node: joint reducer")
+    status = Status(
+        subject="joint reducer",
+        level=level,
+        message="±",
+        hardware_id="A1",
+        kind=(),
+        values=(("speed (rpm)", "850.0"),),
+    )
+    message = diagnostic_status(status, "/node")
+    assert message.name == "/node: joint reducer"
     back = deserialize_message(serialize_message(message), DiagnosticStatus)
     assert back == message
     assert back.level == bytes([level])
