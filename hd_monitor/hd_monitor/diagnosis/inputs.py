@@ -89,9 +89,9 @@ def describe_inputs(
     level, code = _STATES[worst]
     reasons = []
     if silent := [quantity for quantity, absence in missing if absence is not Absence.UNUSABLE]:
-        complaint = f"{_ADVICE}; last complaint: {fault}" if fault else _ADVICE
-        causes = "; ".join(map(explain, silent)) if explain is not None else complaint
-        reasons.append(f"no {listed(silent)}{'' if worst is Absence.LOST else ' yet'}: {causes}")
+        causes = [_ADVICE, f"last complaint: {fault}" if fault else ""] if explain is None else map(explain, silent)
+        missed = f"no {listed(silent)}" if worst is Absence.LOST else f"no {listed(silent)} yet"
+        reasons.append(": ".join(filter(None, [missed, "; ".join(filter(None, causes))])))
     for quantity in (quantity for quantity, absence in missing if absence is Absence.UNUSABLE):
         stamp = (stamps or {}).get(quantity)
         stuck = "" if stamp is None else f"their stamps are stuck at {stamp / NANOSECONDS:.3f} s"

@@ -133,7 +133,8 @@ class JointWatch:
             return
         try:
             self._looks_without_clock += not now
-            if (state := self._describe(now)).code is not InputCode.OK:
+            state = self._describe(now)
+            if state.code is not InputCode.OK or self._input.code is InputCode.WAITING:
                 self._show(self._quiet(now, state))
         except Exception as error:
             self._fail(error)

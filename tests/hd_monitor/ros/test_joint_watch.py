@@ -22,6 +22,10 @@ def explain(name: Quantity) -> str:
     return f"because of the {name}"
 
 
+def quiet(name: Quantity) -> str:
+    return ""
+
+
 def alone() -> str:
     return ""
 
@@ -108,6 +112,15 @@ def test_good_data_is_assessed_and_the_transition_handed_out_once() -> None:
     assert codes_of(watch.take_transitions()) == [("HD_WAITING", "HD_INPUT_OK"), ("HD_UNDETERMINED", "HD_INPUT_OK")]
     assert watch.take_transitions() == []
     assert float(reducer(watch).value("samples")) >= 500
+
+
+def test_what_has_come_is_no_longer_awaited_although_nothing_is_judged_yet() -> None:
+    watch = JointWatch("elbow", JointSettings.from_mapping({"input.source": "accel_stamped"}), START, quiet, alone)
+    assert inputs(watch).message == "No joint states and no vibration signal yet"
+    watch.feed(inputs_of(accelerations(100, 0.5), joint_states(100, 0.5)), START + SECOND)
+    watch.check(START + SECOND)
+    assert inputs(watch).value("fault_code") == "HD_INPUT_OK"
+    assert reducer(watch).value("fault_code") == "HD_WAITING"
 
 
 def test_the_verdict_outlives_silence_with_its_age() -> None:
