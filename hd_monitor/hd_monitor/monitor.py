@@ -140,7 +140,12 @@ class Monitor:
         if (found := self._evidence.identification) is not None:
             verdict = rated(self._judge.conclude(found), found, self.baseline, self.settings.diagnosis)
             verdict = self._with_torque(verdict)
-        self.latest = replace(self.latest, identification=found, verdict=verdict)
+        state = self.latest.input
+        if not state.failed and self.newest_stamps:  # an input may have ended after the last period that is complete
+            for quantity, stamp in self.newest_stamps.items():
+                self._presence.note(quantity, stamp, stamp)
+            state = describe_inputs(self._presence.missing(max(self.newest_stamps.values())), self._recorder.last_fault)
+        self.latest = replace(self.latest, identification=found, verdict=verdict, input=state)
         return self.latest
 
     def silence(self, now: int) -> Assessment:

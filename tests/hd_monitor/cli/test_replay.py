@@ -82,6 +82,23 @@ def test_fail_on_error_lets_a_warning_pass(recording: Path) -> None:
     assert main(["replay", str(recording), "--fail-on", "warn", *suspect]) == 1
 
 
+def test_an_input_that_ends_before_the_recording_is_said_beside_the_verdict(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    events = rec.simulated(programme="fixed", fixed__speed=1200.0, duration=14.0, defect="none")
+    cut = [e for e in events if "block" not in e.topic or e.time < rec.START + 7 * 10**9]
+    path = rec.write(tmp_path / "bag", cut)
+    (joint,) = result_of(path, tmp_path)["joints"]
+    assert (joint["verdict"]["fault_code"], joint["verdict"]["level"]) == ("HD_OK", 0)
+    assert (joint["input"]["fault_code"], joint["input"]["level_name"]) == ("HD_INPUT_LOST", "ERROR")
+    assert joint["input"]["reason"].startswith("No vibration signal: check the publisher")
+    assert {entry["input"] for entry in joint["timeline"]} == {"HD_INPUT_OK"}
+    out = capsys.readouterr().out
+    assert "joint: OK, none (HD_OK)" in out
+    assert "input: ERROR, HD_INPUT_LOST: No vibration signal" in out
+    assert main(["replay", str(path), "--fail-on", "error"]) == 1
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
