@@ -51,6 +51,12 @@ def test_plain_lines_give_the_reason_of_an_undetermined_verdict() -> None:
     assert "The joint has not turned enough yet" in out.getvalue()
 
 
+def test_relative_readings_are_shown_as_shares() -> None:
+    values = {"index kind": "relative", "flexspline share (%)": "98.900", "flexspline share std (%)": "0.300"}
+    shown = View(name="", level=Level.OK, message="", values=values)
+    assert (shown.reading, shown.index("flexspline")) == ("share", "98.90 ± 0.30 %")
+
+
 def test_unknown_numbers_are_shown_as_such() -> None:
     out = io.StringIO()
     empty = View(name="", level=Level.WARN, message="waiting", values={})
