@@ -142,7 +142,7 @@ FAULTS: dict[str, Fault] = {
     "stamps 0": Fault(fault="joint states without stamps", joints=stamp(lambda t, n: 0), cause="the stamps"),
     # Transport
     "loss": Fault(fault="a tenth of the blocks lost", rig={"transport.loss": 0.1}),
-    "half lost": Fault(fault="half of the blocks lost", rig={"transport.loss": 0.5}, cause="to be confirmed"),
+    "half lost": Fault(fault="half of the blocks lost", rig={"transport.loss": 0.5}),
     "duplicates": Fault(fault="a fifth of the blocks sent twice", rig={"transport.duplicates": 0.2}),
     "late": Fault(fault="a tenth of the blocks overtaken by later ones", rig={"transport.late": 0.1}),
     "unplugged": Fault(fault="sensor unplugged after 6 s", blocks=until(6.0, 20.0), cause="No vibration signal"),
@@ -262,6 +262,5 @@ FAULTS: dict[str, Fault] = {
         fault="200 bytes in the middle of a SQLite file overwritten",
         damage=scratched,
         storage="sqlite3",
-        cause="to be confirmed",
     ),
 }

@@ -81,11 +81,11 @@ class Judge:
         count = self._recent.count(_kind(now))
         if _kind(shown) == _kind(now) or count >= self._limits.confirm_count:
             shown = now
-        elif shown.fault_code is FaultCode.WAITING:
-            shown = Verdict.waiting(f"{now.reason} (to be confirmed: {count} of {self._limits.confirm_count})")
-        else:  # held until the new verdict is confirmed; the sentence still describes the present evidence
-            held = f"{now.sentence} (held: {count} of {self._limits.confirm_count} verdicts say so)"
-            return self._latch(replace(shown, reason=held))
+        else:  # the sentence describes the present evidence, though what is shown stays until it is confirmed
+            awaited = f"To be confirmed ({count} of {self._limits.confirm_count} verdicts): {now.sentence}"
+            if shown.fault_code is not FaultCode.WAITING:
+                return self._latch(replace(shown, reason=awaited))
+            shown = Verdict.waiting(awaited)
         self._shown = shown
         return self._latch(shown)
 

@@ -128,7 +128,7 @@ def describe_doubtful_limit(evidence: Identification, limits: DiagnosisSettings,
     if evidence.correlation is not None and float(evidence.correlation[spline, spline + 2]) < _ALIKE:
         return _with_doubts(
             f"A fluctuating stiffness and a transmission error look alike in this motion ({_indexes(evidence)}; "
-            f"{_errors(evidence)}): a change of torque or of speed would tell them apart",
+            f"{_errors(evidence)}): a change of torque or of speed would separate them",
             evidence,
         )
     if std > VAGUE * limits.warn_index:

@@ -92,8 +92,8 @@ def test_a_first_verdict_awaits_its_confirmation() -> None:
     for count in (1, 2):
         verdict = judge.judge(evidence(0.01, 0.10), WAITING)
         assert (verdict.fault_code, verdict.level) == (FaultCode.WAITING, Level.OK)
-        assert verdict.reason.startswith("No verdict yet: the flexspline is defective")
-        assert verdict.reason.endswith(f"(to be confirmed: {count} of 3)")
+        awaited = f"No verdict yet: to be confirmed ({count} of 3 verdicts): The flexspline is defective"
+        assert verdict.reason.startswith(awaited)
     assert judge.judge(evidence(0.01, 0.10), WAITING).fault_code is FaultCode.FLEXSPLINE
 
 
@@ -102,7 +102,7 @@ def test_a_name_is_held_over_a_single_look_that_lacks_motion() -> None:
     settled(judge, evidence(0.01, 0.10))
     verdict = judge.judge(evidence(0.01, 0.10, limitations=(SHORT,)), WAITING)
     assert verdict.fault_code is FaultCode.FLEXSPLINE
-    assert verdict.reason.startswith("One stroke only")
+    assert "One stroke only" in verdict.reason
 
 
 def test_indistinguishable_splines_are_not_named_but_the_defect_is_shown() -> None:
@@ -206,9 +206,9 @@ def test_while_a_verdict_is_held_its_words_follow_the_evidence() -> None:
     judge = judge_of(confirm_count=2, confirm_window=3)
     settled(judge, evidence(0.01, 0.02))
     held = judge.judge(evidence(0.01, 0.10), WAITING)
-    assert held.component is Component.NONE
+    assert (held.component, held.level) == (Component.NONE, Level.OK)
     assert "10.0 %" in held.reason
-    assert "held" in held.reason
+    assert held.reason.startswith("To be confirmed (1 of 2 verdicts): The flexspline is defective")
 
 
 def test_hysteresis_keeps_an_alarm_until_the_index_is_clearly_below_the_limit() -> None:
