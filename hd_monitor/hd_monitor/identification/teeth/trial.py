@@ -39,11 +39,14 @@ class ToothTrial:
         Best values with the teeth given.
     builder : SegmentBuilder
         Of the segments in `problem`.
+    one_speed : bool
+        Whether all motion was at one speed, where what looks like a foreign tone may be the line of other teeth.
     """
 
     problem: Problem
     values: FloatArray
     builder: SegmentBuilder
+    one_speed: bool
 
     def best(self, given: Reducer, others: Sequence[Reducer]) -> Reducer | None:
         """Return the one of some reducers that explains the motion far better than the given one; None if none does.
@@ -67,8 +70,7 @@ class ToothTrial:
 
     def _fit(self, reducer: Reducer, problem: Problem, start: FloatArray | None = None) -> Fit | None:
         """Fit teeth from a start, or without defects from no load and from one; None where that is not possible."""
-        # at one speed foreign tones may be these teeth's lines
-        builder = replace(self.builder, reducer=reducer, keep_tones=True)
+        builder = replace(self.builder, reducer=reducer, keep_tones=self.one_speed)
         try:
             segments = [builder.build([record], None) for record in _records(problem.segments)]
             own = replace(problem, segments=segments, floor=signal_level(segments))

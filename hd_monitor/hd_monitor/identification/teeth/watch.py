@@ -122,14 +122,14 @@ class ToothWatch:
         found = best.teeth in shown or (best.pairs_found > 1 and not one_speed)
         if found and not stands and ranking.lead(own) > LEAD:
             return replace(looked, doubt=ranking.contradiction(given))
-        open_to = set(asked) if self.signal.turns < APART and not one_speed else shown
+        open_to = set(asked) if (poor or self.signal.turns < APART) and not one_speed else shown
         near = [
             teeth
             for teeth in ranking.contenders(own, LEAD)
             if teeth in open_to and abs(teeth[0] - own[0]) < NEAR and (teeth.is_in_catalogue or not own.is_in_catalogue)
         ]
         if not near:
-            return replace(looked, doubt=None)
+            return looked if poor else replace(looked, doubt=None)
         if seconds < GROWTH * self.tried:
             return looked
         better = trial(given, [teeth.reducer(given.mount) for teeth in near])

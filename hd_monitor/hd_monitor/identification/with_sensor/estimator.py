@@ -168,12 +168,15 @@ class Estimator:
     def _question_teeth(self, state: State, fit: Fit) -> ToothWatch:
         """Ask whether other tooth numbers than those given explain the recent motion better."""
         context = self._context
-        trial = ToothTrial(problem=context.problem_of_all(state), values=fit.values, builder=context.builder)
+        one_speed = not state.coverage.speed_varies
+        trial = ToothTrial(
+            problem=context.problem_of_all(state), values=fit.values, builder=context.builder, one_speed=one_speed
+        )
         return state.teeth.after(fit, context.given, anew=state.schedule.restarted == state.seconds).look(
             context.settings.reducer,
             context.unknowns.harmonics,
             trial.best,
             seconds=state.seconds,
-            one_speed=not state.coverage.speed_varies,
+            one_speed=one_speed,
             poor=state.residual.excess(state.coverage.span) > POOR,
         )
