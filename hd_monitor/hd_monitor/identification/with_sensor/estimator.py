@@ -32,10 +32,6 @@ WELL_KNOWN = 0.02
 _WALK = 0.01**2 / 60.0
 """Variance of a random walk of ln fn [1/s]: temperature, load and pose move it by about 1 % in a minute."""
 
-EARLY = 8.0
-"""Motion [s] after which neither a turned sensor nor a moving inertia is looked for: what changes later is a change
-of the reducer."""
-
 MOST_UNFOLLOWED = 3
 """Segments in a row that are left out since the course of the inertia was not found."""
 
@@ -160,8 +156,9 @@ class Estimator:
         if hopeless or state.setup.wanders or not (unsettled or state.schedule.is_due(inflation, state.seconds)):
             return state, fit, left
         state, fit = look_elsewhere(context, state, fit)
+        # An arm's inertia moves from the first move on: what changes later is a change of the reducer
         for other_model in (turn_sensor, let_inertia_wander):
-            if state.seconds <= EARLY and is_poor(context, state, fit):
+            if state.seconds <= WINDOW and is_poor(context, state, fit):
                 state, fit = other_model(context, state, fit)
         return state, fit, context.unexplained(state, fit)
 
