@@ -19,9 +19,9 @@ FAULTS = {
 
 
 def settled(status: Shown) -> bool:
-    """Whether a part is named and both indexes are known to a tenth of a per cent of the stiffness."""
+    """Whether a part is named and both indexes are known to a twentieth of a per cent of the stiffness."""
     return status.component != "undetermined" and all(
-        f"{spline} index std (%)" in status.values and status.number(f"{spline} index std (%)") < 0.1
+        f"{spline} index std (%)" in status.values and status.number(f"{spline} index std (%)") < 0.05
         for spline in ("flexspline", "circular spline")
     )
 
