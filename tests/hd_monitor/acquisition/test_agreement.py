@@ -106,3 +106,9 @@ def test_numbers_whose_squares_overflow_are_compared(wild):
     assert one.code is LimitationCode.POSITION_STILL
     assert all_of_them.code is LimitationCode.VELOCITY_SCALE
     assert all_of_them.values["ratio"] == pytest.approx(1.0 / wild)
+
+
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")
+def test_finite_positions_whose_steps_are_not_are_no_error():
+    found = contradiction(np.where(np.arange(TIMES.size) % 2, 1.7e308, -1.7e308), np.full(TIMES.size, 0.5))
+    assert found.blocks
