@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from .conftest import ERROR, OK, QUICK, WARN, Bench, Feeder, Shown
+from .conftest import ERROR, OK, QUICK, Bench, Feeder, Shown
 from .test_verdicts import settled
 
 pytestmark = pytest.mark.ros
@@ -33,13 +33,13 @@ def test_at_first_nothing_is_wrong(bench: Bench) -> None:
     bench.until_input(lost, "a lost input")
     levels = [status.level for status in bench.inputs]
     assert levels == sorted(levels)
-    assert {WARN, ERROR} <= set(levels)
     assert all(lost(status) == (status.level == ERROR) for status in bench.inputs)
 
     def logged() -> list[str]:
         return [line.partition("]")[0] for line in process.output.splitlines() if "joint input: No" in line]
 
-    # The bench may have missed the first statuses, the log has not; it may come later than the status.
+    # On a busy machine the bench may find the node late and miss its first statuses, the log has them all; a line may
+    # come later than its status.
     bench.until(lambda: "[ERROR" in logged(), "an error in the log")
     assert logged() == ["[INFO", "[WARN", "[ERROR"]
 
