@@ -115,7 +115,8 @@ def test_wrong_teeth_with_a_sensor(tmp_path: Path, motion: str, tone: str, shift
     check(rec.write(tmp_path / "bag", with_sensor(motion, TONES[tone])), shifts)
 
 
-@pytest.mark.parametrize(("motion", "tone"), [("one speed", "mains"), ("one speed", "order 2.05"), ("run-up", "mains")])
+@pytest.mark.parametrize("tone", ["mains", "order 2.05"])
+@pytest.mark.parametrize("motion", MOTIONS)
 def test_right_teeth_with_a_sensor(tmp_path: Path, motion: str, tone: str) -> None:
     check(rec.write(tmp_path / "bag", with_sensor(motion, TONES[tone])), (0,))
 

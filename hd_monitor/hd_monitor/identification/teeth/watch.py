@@ -119,7 +119,9 @@ class ToothWatch:
         stands = own in shown and self._are_strong(own)  # a tone beside them makes another pair with one of the two
         if stands and not poor:
             return replace(looked, doubt=None)
-        found = best.teeth in shown or (best.pairs_found > 1 and not one_speed)
+        # one line that those given do not have may be a tone beside one that they do
+        foreign = set(best.lines).difference(*map(own.lines, range(1, harmonics + 1)))
+        found = len(foreign) > 1 and (best.teeth in shown or (best.pairs_found > 1 and not one_speed))
         if found and not stands and ranking.lead(own) > LEAD:
             return replace(looked, doubt=ranking.contradiction(given))
         open_to = set(asked) if (poor or self.signal.turns < APART) and not one_speed else shown
