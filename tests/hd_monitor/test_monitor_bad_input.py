@@ -4,7 +4,7 @@ import tracemalloc
 
 import numpy as np
 import pytest
-from tests.hd_monitor.monitored import BLOCK, EPOCH, PAPER, RATE, SETTINGS, Recording, latest, run
+from tests.hd_monitor.monitored import BLOCK, EPOCH, PAPER, RATE, Recording, latest, run
 
 from hd_monitor.arrays import FloatArray, IntArray
 from hd_monitor.contract import Block
@@ -234,88 +234,3 @@ def test_rejected_messages_show(recording: Recording) -> None:
     monitor.reject("a block has 2 dimensions")
     assert monitor.silence(0).quality.rejected == 1
     assert "2 dimensions" in monitor.silence(0).quality.last_fault
-
-
-@pytest.mark.parametrize("uncertainty", [0.1, 0.5])
-def test_efforts_of_zero_do_not_count_as_measured(recording: Recording, uncertainty: float) -> None:
-    """That load.torque stands in is said; how the lines couple with each other tells whether it is right."""
-    monitor = Monitor(JointSettings.from_mapping(PAPER | {"load.assumed_uncertainty": uncertainty}))
-    monitor.add(Quantity.MOTION, recording.joint_stamps, recording.position, recording.velocity, 0.0 * recording.effort)
-    for block in recording.blocks():
-        monitor.add_block(block)
-    monitor.finish()
-    found = latest(monitor).identification
-    assert found is not None
-    assert not found.relative
-    assert latest(monitor).torque_source == "assumed"
-    assert "taken to be 10 N·m" in latest(monitor).verdict.reason
-    assert latest(monitor).verdict.component is Component.FLEXSPLINE
-    assert latest(monitor).verdict.level is Level.ERROR
-
-
-def test_positions_in_degrees_are_suspected(recording: Recording) -> None:
-    monitor = Monitor(SETTINGS)
-    wrong = np.degrees(recording.position), np.degrees(recording.velocity)
-    monitor.add(Quantity.MOTION, recording.joint_stamps, *wrong, recording.effort)
-    for block in recording.blocks():
-        monitor.add_block(block)
-    monitor.finish()
-    verdict = latest(monitor).verdict
-    assert verdict.component is Component.UNDETERMINED
-    assert "in rad" in verdict.reason
-
-
-@pytest.mark.parametrize(
-    ("factor", "words"),
-    [
-        (2.0, "the positions change 0.5 times as much as the velocities say"),
-        (-1.0, "velocities of the opposite sign"),
-        (0.0, "The velocities in joint_states are zero while the positions move"),
-        (180.0 / np.pi, "velocities in deg/s"),
-    ],
-)
-def test_velocities_that_contradict_the_positions_are_named_as_the_cause(
-    recording: Recording, factor: float, words: str
-) -> None:
-    monitor = Monitor(SETTINGS)
-    monitor.add(
-        Quantity.MOTION, recording.joint_stamps, recording.position, factor * recording.velocity, recording.effort
-    )
-    for block in recording.blocks():
-        monitor.add_block(block)
-    monitor.finish()
-    verdict = latest(monitor).verdict
-    assert (verdict.component, verdict.level) == (Component.UNDETERMINED, Level.WARN)
-    assert words in verdict.reason
-
-
-def test_positions_that_jump_about_are_named_as_the_cause(recording: Recording) -> None:
-    monitor = Monitor(SETTINGS)
-    noise = np.random.default_rng(4).standard_normal(recording.position.size)
-    monitor.add(Quantity.MOTION, recording.joint_stamps, noise, recording.velocity, recording.effort)
-    for block in recording.blocks():
-        monitor.add_block(block)
-    monitor.finish()
-    assert "Positions and velocities in joint_states contradict each other" in latest(monitor).verdict.reason
-
-
-def test_missing_velocities_are_taken_from_the_positions(recording: Recording) -> None:
-    monitor = Monitor(SETTINGS)
-    monitor.add(
-        Quantity.MOTION,
-        recording.joint_stamps,
-        recording.position,
-        np.full(recording.position.size, np.nan),
-        recording.effort,
-    )
-    for block in recording.blocks():
-        monitor.add_block(block)
-    monitor.finish()
-    assert latest(monitor).verdict.component is Component.FLEXSPLINE
-
-
-def test_contradictory_joint_states_are_named_without_a_sensor_too(recording: Recording) -> None:
-    monitor = Monitor(JointSettings.from_mapping({"input.source": "joint_effort"}))
-    monitor.add(Quantity.MOTION, recording.joint_stamps, recording.position, -recording.velocity, recording.effort)
-    monitor.finish()
-    assert "velocities of the opposite sign" in latest(monitor).verdict.reason

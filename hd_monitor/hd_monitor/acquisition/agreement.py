@@ -4,9 +4,8 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import norm
+from numpy.linalg import norm
 
-from ..arrays import FloatArray
 from ..limitation import Limitation, LimitationCode, blocker
 from .record import JointSamples
 
@@ -49,14 +48,14 @@ def compare_motion(samples: JointSamples, *, minimum_speed: float, reduction: fl
     if (wrapped := np.abs(steps) > _WRAPPED).any():
         steps -= math.tau * np.rint(steps / math.tau) * wrapped
     moved, said = steps, 0.5 * (speed[1:] + speed[:-1]) * (times[1:] - times[:-1])
-    size_moved, size_said, apart = _size(moved), _size(said), _size(moved - said)
+    size_moved, size_said, apart = (float(norm(way)) for way in (moved, said, moved - said))
     if apart > SLIP * max(size_moved, size_said):
         # Between single messages quantisation and noise differ, too
         first = np.flatnonzero(np.diff(np.floor((times[1:] - times[0]) / WINDOW), prepend=-1.0))
         moved, said = np.add.reduceat(moved, first), np.add.reduceat(said, first)
-        size_moved, size_said, apart = _size(moved), _size(said), _size(moved - said)
+        size_moved, size_said, apart = (float(norm(way)) for way in (moved, said, moved - said))
     larger = max(size_moved, size_said)
-    if larger < minimum_speed * float(times[-1] - times[0]) / math.sqrt(moved.size):
+    if larger <= minimum_speed * float(times[-1] - times[0]) / math.sqrt(moved.size):
         return MotionAgreement(False, None)
     difference = apart / larger
     if difference <= SLIP:
@@ -73,11 +72,6 @@ def compare_motion(samples: JointSamples, *, minimum_speed: float, reduction: fl
     else:
         found = blocker(LimitationCode.MOTION_INCONSISTENT, difference_percent=100.0 * difference)
     return MotionAgreement(True, found)
-
-
-def _size(values: FloatArray) -> float:
-    """Return the Euclidean norm; infinite where steps between finite positions are."""
-    return float(norm(values, check_finite=False))
 
 
 def _scaled(ratio: float, reduction: float) -> Limitation:

@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+from numpy.linalg import norm
 
 from ..arrays import FloatArray
 from ..limitation import Limitation, LimitationCode, blocker
@@ -36,14 +37,9 @@ def motion_flaw(samples: JointSamples, order: float) -> Limitation | None:
     uneven = mean * (apart - float(np.median(apart)))  # what jitter makes of the way
     jitter = float(np.std(apart)) / math.sqrt(2.0)
     turn = order * jitter * math.sqrt(float(np.mean(mean**2)))
-    if turn > _TURN and _size(moved - mean * apart) > _EXPLAINED * _size(uneven):  # false without velocities
+    if turn > _TURN and norm(moved - mean * apart) > _EXPLAINED * norm(uneven):  # false without velocities
         return blocker(LimitationCode.MOTION_JITTER, jitter_ms=1e3 * jitter, turn_deg=math.degrees(turn))
     return None
-
-
-def _size(values: FloatArray) -> float:
-    """Return the Euclidean norm."""
-    return math.sqrt(float(values @ values))
 
 
 def effort_flaw(samples: JointSamples) -> Limitation | None:

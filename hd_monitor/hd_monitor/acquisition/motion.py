@@ -9,6 +9,10 @@ import numpy.typing as npt
 from ..arrays import BoolArray, FloatArray
 from .clock import recover_clock
 
+LARGEST = 1e12
+"""Position [rad], velocity [rad/s] or torque [N·m] up to which a message is believed: beyond it, neighbouring
+floating-point numbers are more than 1e-4 apart, which turns a line visibly, and squares and sums soon overflow."""
+
 _LARGEST_HOLE = 0.25  # s; within that, a joint's speed can change in ways that interpolation cannot follow
 _HOLE_PERIODS = 5.0
 _ENOUGH_EFFORT = 0.5  # of the messages: torque is slow, so that single missing efforts are bridged
@@ -74,9 +78,10 @@ class Track:
     def extend(self, times: FloatArray, rows: FloatArray) -> BoolArray:
         """Append rows, shape (N, columns), with their times [s], shape (N,), increasing.
 
-        Returns which ones were taken, shape (N,): finite in the first column, and later than the one before.
+        Returns which ones were taken, shape (N,): finite in the first column, nowhere beyond `LARGEST`, and later than
+        the one before.
         """
-        good = np.isfinite(rows[:, 0])
+        good = np.isfinite(rows[:, 0]) & ~(np.abs(rows) > LARGEST).any(axis=1)
         if self._times.size:
             good &= times > self._times[-1]
         good[1:] &= times[1:] > times[:-1]

@@ -12,7 +12,7 @@ from ..settings import JointSettings
 from ..sources import Quantity
 from .bursts import interleaved
 from .clock import Clock, recover_clock
-from .motion import MotionTrack, TorqueTrack, Track, even_stamps
+from .motion import LARGEST, MotionTrack, TorqueTrack, Track, even_stamps
 from .quality import Quality
 from .record import JointSamples, Record
 from .screening import Screened, screen
@@ -136,10 +136,11 @@ class Recorder:
         dropped = stamps.size - int(np.count_nonzero(taken))
         self.count(motion_messages=stamps.size - dropped, motion_faults=dropped)
         if dropped:
-            self.count(last_fault="joint states without a finite position or with repeated stamps were left out")
-            good = np.isfinite(rows[:, 0])
-            good[1:] &= stamps[1:] > stamps[:-1]
-            times, rows = times[good], rows[good]
+            self.count(
+                last_fault="joint states without a finite position, with numbers beyond "
+                f"{LARGEST:g} or with repeated stamps were left out"
+            )
+            times, rows = times[taken], rows[taken]
         return JointSamples(times=times, angle=rows[:, 0], speed=rows[:, 1], effort=rows[:, 2])
 
     def _measured_torque(self, period: Period) -> int:
@@ -151,7 +152,9 @@ class Recorder:
         taken = int(np.count_nonzero(self._extend(self._torque_track, times, rows, period, Quantity.TORQUE)))
         self.count(torque_messages=taken, torque_faults=stamps.size - taken)
         if taken < stamps.size:
-            self.count(last_fault="torques that are not finite or with repeated stamps were left out")
+            self.count(
+                last_fault=f"torques that are not finite, beyond {LARGEST:g} N·m or with repeated stamps were left out"
+            )
         return taken
 
     @staticmethod

@@ -9,7 +9,7 @@ from itertools import groupby
 from ..errors import HdMonitorError
 from ..parameter import Parameter
 from ..settings import NODE_PARAMETERS, PARAMETERS
-from ..settings.groups import JOINTS
+from ..settings.table import JOINTS
 from . import extensions
 
 WIDTH = 110

@@ -10,7 +10,7 @@ from rclpy.parameter import Parameter as RosParameter
 
 from ..errors import ParameterError
 from ..settings import NODE_PARAMETERS, PARAMETERS, JointSettings, set_aside_foreign, split_joints
-from ..settings.groups import JOINTS
+from ..settings.table import JOINTS
 from .declaration import answer, declare
 
 CHANGEABLE = "diagnosis."

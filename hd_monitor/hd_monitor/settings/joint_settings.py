@@ -9,14 +9,8 @@ from ..model.parameters import Dynamics
 from ..parameter import Value, check_all, fill_group
 from ..reducer import Reducer
 from ..sources import INPUT_SOURCES, JOINT_STATES, LOAD_SOURCES, Quantity, Source
-from .groups import (
-    PARAMETERS,
-    AnalysisSettings,
-    DiagnosisSettings,
-    HistorySettings,
-    InputSettings,
-    LoadSettings,
-)
+from .groups import AnalysisSettings, DiagnosisSettings, HistorySettings, InputSettings, LoadSettings
+from .table import PARAMETERS
 from .uncertainty import Uncertainty
 
 

@@ -5,8 +5,8 @@ from typing import Any
 
 from ..errors import ParameterError
 from ..parameter import flatten
-from .groups import NODE_PARAMETERS, PARAMETERS, ROS_PARAMETERS
 from .joint_settings import JointSettings
+from .table import NODE_PARAMETERS, PARAMETERS, ROS_PARAMETERS
 
 _OF_JOINTS = {parameter.name for parameter in PARAMETERS}
 _OF_NO_JOINT = {parameter.name for parameter in NODE_PARAMETERS} | set(ROS_PARAMETERS)
