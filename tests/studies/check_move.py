@@ -1,21 +1,29 @@
 """How well does one health-check move repeat, and is a line that grows by 30 % noticed within one?
 
-    python tests/studies/check_move.py [--moves 20] [--seed 2024]
+    python tests/studies/check_move.py [--sound 1000] [--moves 100] [--seed 2024]
 
 From joint states alone. The rig has the effects of a real drive (`drive: catalogue`), and each move other noise.
-Repeatability is the standard deviation of a reading over moves; growth is noticed where the change against the first
-five moves is significant at 1 in 1000.
+Repeatability is the standard deviation of a reading over moves. The first five are the baseline. Each move after them
+is looked at by itself: a change is noticed where it is significant at 1 in 1000, and what a monitor then shows is
+counted.
 """
 
 import argparse
 import math
 import sys
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import NamedTuple
 
+import numpy as np
+
+from hd_monitor.assessment import Assessment
+from hd_monitor.change import Change
 from hd_monitor.history.entry import Entry, Kind
-from hd_monitor.history.series import series_of
+from hd_monitor.history.rating import baseline_of, rated
+from hd_monitor.history.series import SPLINES, series_of
 from hd_monitor.history.trend import change_of
 from hd_monitor.offline.move import MoveLimits, plan_move
 from hd_monitor.settings import JointSettings
@@ -27,9 +35,13 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 from tests.studies.false_alarms import watch
 
-SOUND = {"flexspline.beta": [0.012, 0.008, 0.004], "circular_spline.beta": [0.012, 0.008, 0.004]}
-ERRORS = {"flexspline.transmission_error": [0.3, 0.08, 0.03], "circular_spline.transmission_error": [0.25, 0.08, 0.03]}
-"""[arcmin], as `drive: catalogue` has them."""
+LINES = {
+    "flexspline.beta": [0.012, 0.008, 0.004],
+    "circular_spline.beta": [0.012, 0.008, 0.004],
+    "flexspline.transmission_error": [0.3, 0.08, 0.03],
+    "circular_spline.transmission_error": [0.25, 0.08, 0.03],
+}
+"""Of a sound drive; the transmission errors [arcmin] are those of `drive: catalogue`."""
 GROWTH = 1.3
 LIMITS = MoveLimits(lower=-1.5, upper=1.5, speed=2.0, acceleration=5.0)
 BASE = 5
@@ -49,13 +61,20 @@ class OnTheMove(RigSettings):
         return SpeedProgramme(times=move.times, speeds=rpm, cycles=1)
 
 
-def drive(seed: int, number: int, **rig: object) -> Entry:
+class Driven(NamedTuple):
+    """A move, as the ledger keeps it and as the monitor shows it."""
+
+    entry: Entry
+    last: Assessment
+
+
+def drive(seed: int, number: int, **rig: object) -> Driven:
     """Drive one move and sum it up."""
     effort = {"joint_states.effort": "reaction", "joint_states.effort_noise": 0.3, "joint_states.rate": 250.0}
     given = {"drive": "catalogue", "defect": "custom", "duration": 60.0, "seed": seed} | effort | rig
     *_, last = watch(Simulation(OnTheMove.from_mapping(given)), JOINT_STATES)
     entry = Entry.of(last, "joint", kind=Kind.EVIDENCE)
-    return replace(entry, time=float(number), seconds=3600.0 / BASE, revolutions=1000.0)
+    return Driven(replace(entry, time=float(number), seconds=3600.0 / BASE, revolutions=1000.0), last)
 
 
 def repeatability(entries: Sequence[Entry]) -> Iterator[str]:
@@ -68,35 +87,53 @@ def repeatability(entries: Sequence[Entry]) -> Iterator[str]:
         )
 
 
-def noticed(base: Sequence[Entry], moves: Sequence[Entry], name: str) -> int:
-    """In how many single moves after the baseline a reading's change is significant at `CHANCE`."""
-    count = 0
+def growths(base: Sequence[Entry], moves: Sequence[Driven], spline: str) -> list[Change]:
+    """Change of a spline's first line in every single move after the baseline."""
+    name = f"{spline.replace('_', ' ')} line 1"
+    found = []
     for move in moves:
-        entries = [*base, replace(move, time=1e3)]
-        series = next(one for one in series_of(entries) if one.name == name)
-        change = change_of(series)
-        count += change is not None and change.p_value < CHANCE
-    return count
+        entries = [*base, replace(move.entry, time=1e6)]
+        change = change_of(next(series for series in series_of(entries) if series.name == name))
+        if change is None:
+            raise ValueError(f"no {name} in the move")
+        found.append(change)
+    return found
+
+
+def shown(base: Sequence[Entry], moves: Sequence[Driven]) -> Counter[str]:
+    """Count what a monitor that knows the baseline shows after each move."""
+    baseline = baseline_of([*base, replace(base[-1], time=1e6, kind=Kind.BASELINE, verdict=None)])
+    limits = JointSettings.from_mapping(JOINT_STATES).diagnosis
+    verdicts = (rated(move.last.verdict, move.last.identification, baseline, limits) for move in moves)
+    return Counter(f"{verdict.component} {verdict.fault_code}" for verdict in verdicts)
 
 
 def main() -> None:
     """Print the study's figures."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--moves", type=int, default=20, help="moves of each kind")
+    parser.add_argument("--sound", type=int, default=1000, help="moves of the sound drive")
+    parser.add_argument("--moves", type=int, default=100, help="moves with each spline's line grown")
     parser.add_argument("--seed", type=int, default=2024)
     options = parser.parse_args()
-    sound = [drive(options.seed + n, n, **(SOUND | ERRORS)) for n in range(BASE + options.moves)]
-    print(*repeatability(sound), sep="\n", flush=True)
-    base, later = sound[:BASE], sound[BASE:]
-    for name in ("flexspline line 1", "circular spline line 1"):
-        print(f"{name}: {noticed(base, later, name)} false alarms in {len(later)} moves", flush=True)
-    for spline in ("flexspline", "circular_spline"):
-        both = SOUND | ERRORS
-        grown = {key: [GROWTH * k for k in value] for key, value in both.items() if key.startswith(spline)}
-        first = options.seed + 1000
-        moves = [drive(first + n, n, **(both | grown)) for n in range(options.moves)]
-        name = f"{spline.replace('_', ' ')} line 1"
-        print(f"{name} grown by 30 %: noticed in {noticed(base, moves, name)} of {len(moves)} moves", flush=True)
+    base = [drive(options.seed + n, n, **LINES).entry for n in range(BASE)]
+    cases = {"": options.sound} | dict.fromkeys(SPLINES, options.moves)
+    for place, (spline, count) in enumerate(cases.items()):
+        first = options.seed + 1_000_000 * (place + 1)
+        grown = {key: [GROWTH * k for k in value] for key, value in LINES.items() if spline and key.startswith(spline)}
+        moves = [drive(first + n, BASE + n, **(LINES | grown)) for n in range(count)]
+        if not spline:
+            print(*repeatability([*base, *(move.entry for move in moves)]), sep="\n")
+        print(f"{spline or 'nothing'} grown, {count} moves")
+        for line in SPLINES:
+            changes = growths(base, moves, line)
+            growth, deviation = np.array([(c.change / c.before, c.change / c.std) for c in changes]).T
+            noticed = sum(change.p_value < CHANCE for change in changes)
+            print(
+                f"  {line}: noticed in {noticed}; growth {100 * growth.mean():.1f} ± {100 * growth.std():.1f} %, in "
+                f"standard deviations {deviation.mean():.2f} ± {deviation.std():.2f}, from {deviation.min():.2f} to "
+                f"{deviation.max():.2f}"
+            )
+        print(f"  shown: {dict(shown(base, moves))}", flush=True)
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 
 from scipy.stats import norm
 
@@ -10,7 +11,7 @@ from ..identification.result import Identification
 from ..limitation import LimitationCode
 from ..settings.groups import DiagnosisSettings
 from .entry import Entry, Kind
-from .series import lines_of, series_of
+from .series import Motion, lines_of, series_of
 from .trend import Mean, weighted_mean
 
 CHANCE = 1e-3
@@ -30,22 +31,28 @@ _NO_NAME = {
 """What leaves open which line is the larger one, but not whether one has grown."""
 
 
-Baseline = Mapping[Component, Mean]
-"""Amplitude of each spline's first line in the baseline."""
+class Baseline(NamedTuple):
+    """The first pair as it should be."""
+
+    lines: Mapping[Component, Mean]
+    """Amplitude of each spline's."""
+    motion: Motion = ()
+    """The one motion that showed it, again and again; empty where they differed."""
 
 
 def baseline_of(entries: Sequence[Entry]) -> Baseline | None:
     """Return the first pair in the baseline; None as long as it is neither set nor complete."""
     found = {series.name: series for series in series_of(entries)}
     is_set = any(entry.kind is Kind.BASELINE for entry in entries)
-    references = {}
+    lines: dict[Component, Mean] = {}
+    motion: Motion = ()
     for component, name in _NAMES.items():
         series = found.get(f"{name} line 1")
         if series is None or not series.is_baseline.any() or (series.is_baseline.all() and not is_set):
             return None
-        base = series.is_baseline
-        references[component] = weighted_mean(series.values[base], series.stds[base])
-    return references
+        base, motion = series.is_baseline, series.motion
+        lines[component] = weighted_mean(series.values[base], series.stds[base])
+    return Baseline(lines, motion)
 
 
 def rated(
@@ -86,17 +93,18 @@ def _may_be_rated(verdict: Verdict, found: Identification) -> bool:
     if verdict.fault_code is FaultCode.UNRATED:
         return True
     codes = {blocker.code for blocker in found.blockers}
-    return verdict.fault_code is FaultCode.UNDETERMINED and bool(codes) and codes <= _NO_NAME
+    unnamed = verdict.fault_code in (FaultCode.UNDETERMINED, FaultCode.WAITING)
+    return unnamed and bool(codes) and codes <= _NO_NAME
 
 
 def _growth(found: Identification, baseline: Baseline) -> dict[Component, tuple[float, float]] | None:
     """Growth of each spline's first line as a fraction, and its standard deviation; None without lines."""
-    line = next((line for line in lines_of(found.lines, found.evidence) if line.k == 1), None)
+    line = next((line for line in lines_of(found.lines, found.evidence, baseline.motion) if line.k == 1), None)
     if line is None:
         return None
     growth = {}
-    larger = max(base.value for base in baseline.values())
-    for part, base in baseline.items():
+    larger = max(base.value for base in baseline.lines.values())
+    for part, base in baseline.lines.items():
         amplitude, std = (getattr(pair, part.value) for pair in (line.amplitude, line.std))
         size = max(base.value, SMALLEST * larger)
         growth[part] = (amplitude - base.value) / size, math.hypot(std * base.widened, base.std) / size

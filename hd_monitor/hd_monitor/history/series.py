@@ -15,7 +15,16 @@ from .entry import Entry, Kind
 BASELINE_MOTION = 3600.0
 """Motion [s] behind a baseline: the last before it was set or, where none was, the first of all."""
 
+SAME_MOTION = 0.01
+"""Part by which travel, mean speed and duration may differ where a motion is the same one again."""
+
+FEWEST_REPEATS = 3
+"""Repetitions in the baseline from which they show whether the lines' uncertainty holds."""
+
 SPLINES = ("flexspline", "circular_spline")
+
+Motion = Sequence[DirectionEvidence]
+"""A motion, by the evidence that it gave direction by direction."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -30,11 +39,14 @@ class Series:
     revolutions : ndarray, shape (points,)
         Of the wave generator since the reducer was first seen.
     values, stds : ndarray, shape (points,)
-        With the standard deviation that each measurement had by itself.
+        With the standard deviation that each measurement had by itself, as a repetition where it is one of the
+        baseline's motion.
     is_baseline : ndarray of bool, shape (points,)
         What the others are compared with.
     warn, error : float
         Limits in the same unit; NaN where there are none.
+    motion : sequence of DirectionEvidence
+        The one motion that the baseline repeats; empty where its motions differ.
     """
 
     name: str
@@ -46,6 +58,7 @@ class Series:
     is_baseline: np.typing.NDArray[np.bool_]
     warn: float = math.nan
     error: float = math.nan
+    motion: Motion = ()
 
 
 def series_of(entries: Sequence[Entry]) -> list[Series]:
@@ -57,18 +70,24 @@ def series_of(entries: Sequence[Entry]) -> list[Series]:
     kept = [(entry, float(total)) for entry, total in zip(entries, turned, strict=True) if entry.kind is Kind.EVIDENCE]
     kept = [(entry, total) for entry, total in kept if entry.source == kept[-1][0].source]
     base = _baseline(entries, [entry for entry, _ in kept])
+    repeated = _repeated_motion([entry for (entry, _), is_base in zip(kept, base, strict=True) if is_base])
     columns: dict[str, list[tuple[float, float, float, float, bool]]] = {}
     about: dict[str, tuple[str, float, float]] = {}
     for (entry, total), is_base in zip(kept, base, strict=True):
-        for name, unit, value, std, warn, error in _readings(entry):
+        for name, unit, value, std, warn, error in _readings(entry, repeated):
             if math.isfinite(value) and math.isfinite(std) and std > 0.0:
                 columns.setdefault(name, []).append((entry.time, total, value, std, is_base))
                 about[name] = unit, warn, error
-    return [_series(name, *about[name], rows) for name, rows in columns.items()]
+    return [_series(name, *about[name], repeated, rows) for name, rows in columns.items()]
 
 
 def _series(
-    name: str, unit: str, warn: float, error: float, rows: Iterable[tuple[float, float, float, float, bool]]
+    name: str,
+    unit: str,
+    warn: float,
+    error: float,
+    motion: Motion,
+    rows: Iterable[tuple[float, float, float, float, bool]],
 ) -> Series:
     times, revolutions, values, stds, base = (np.array(column) for column in zip(*rows, strict=True))
     return Series(
@@ -81,6 +100,7 @@ def _series(
         is_baseline=base.astype(bool),
         warn=warn,
         error=error,
+        motion=motion,
     )
 
 
@@ -99,7 +119,22 @@ def _baseline(entries: Sequence[Entry], kept: Sequence[Entry]) -> list[bool]:
     return [id(entry) in chosen for entry in kept]
 
 
-def _readings(entry: Entry) -> Iterator[tuple[str, str, float, float, float, float]]:
+def _repeated_motion(baseline: Sequence[Entry]) -> Motion:
+    """Return the one motion of which all entries of a baseline are repetitions; none where they are not, or too few."""
+    first = baseline[0].evidence if len(baseline) >= FEWEST_REPEATS else ()
+    return first if all(_is_repetition(entry.evidence, first) for entry in baseline) else ()
+
+
+def _is_repetition(motion: Motion, of: Motion) -> bool:
+    """Whether a motion is another one again."""
+    one, other = ([piece for piece in pieces if piece.k == 1] for pieces in (motion, of))
+    if not one or [piece.name for piece in one] != [piece.name for piece in other]:
+        return False
+    first, second = ([(piece.travel, piece.speed, piece.seconds) for piece in pieces] for pieces in (one, other))
+    return np.allclose(first, second, rtol=SAME_MOTION, atol=0.0)
+
+
+def _readings(entry: Entry, repeated: Motion) -> Iterator[tuple[str, str, float, float, float, float]]:
     """Name, unit, value, standard deviation, warn and error limit of each reading of an entry."""
     none = (math.nan, math.nan)
     if entry.index is not None and entry.index_std is not None and not entry.relative:
@@ -107,7 +142,7 @@ def _readings(entry: Entry) -> Iterator[tuple[str, str, float, float, float, flo
     if entry.transmission_error is not None and entry.transmission_error_std is not None:
         error, std = entry.transmission_error, entry.transmission_error_std
         yield from _both("transmission error", "arcmin", error, std, entry.transmission_error_limits)
-    for line in lines_of(entry.lines, entry.evidence):
+    for line in lines_of(entry.lines, entry.evidence, repeated):
         yield from _both(f"line {line.k}", "signal's", line.amplitude, line.std, none)
         if line.k == 1 and min(line.amplitude) > 0.0:
             relative = [s / a for a, s in zip(line.amplitude, line.std, strict=True)]
@@ -123,12 +158,20 @@ def _both(
         yield (f"{spline.replace('_', ' ')} {name}", unit, getattr(value, spline), getattr(std, spline), *limits)
 
 
-def lines_of(lines: Sequence[LineEstimate], evidence: Sequence[DirectionEvidence]) -> Iterator[LineEstimate]:
-    """Lines of the newest motion; from joint states alone the pooled `lines` hold earlier motion too."""
+def lines_of(
+    lines: Sequence[LineEstimate], evidence: Sequence[DirectionEvidence], repeated: Motion
+) -> Iterator[LineEstimate]:
+    """Lines of the newest motion; from joint states alone the pooled `lines` hold earlier motion too.
+
+    Amplitudes that vary with the speed have skirts, which limit what one motion tells of a line. They come again with
+    the same motion, so the standard deviations of a repetition are without them.
+    """
     if not evidence:
         yield from lines
+    again = _is_repetition(evidence, repeated)
     for k in sorted({piece.k for piece in evidence}):
         pieces = [piece for piece in evidence if piece.k == k]
         amplitude = np.mean([piece.amplitude for piece in pieces], axis=0)
-        std = np.sqrt(np.square([piece.std for piece in pieces]).sum(axis=0)) / len(pieces)
+        skirts = np.fmax([piece.floor if again else 1.0 for piece in pieces], 1.0)
+        std = np.sqrt((np.square([piece.std for piece in pieces]).T / skirts).sum(axis=1)) / len(pieces)
         yield LineEstimate(k=k, amplitude=LinePair(*amplitude.tolist()), std=LinePair(*std.tolist()))

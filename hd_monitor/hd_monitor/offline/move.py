@@ -1,7 +1,7 @@
 """A health-check move: strokes there and back whose speeds carry the first pair of lines where they tell most.
 
-With a sensor that is around the natural frequency, where a stiffness that fluctuates and a transmission error answer
-differently; from joint states alone it is anywhere below half of their rate. Different speeds distinguish a line from a
+That is around the natural frequency: there a stiffness that fluctuates and a transmission error answer differently,
+and both stand out of the motor's ripple, which slow motion shows alone. Different speeds distinguish a line from a
 tone, both directions show friction, and the longest travel separates the two splines best.
 """
 
@@ -106,20 +106,19 @@ def top_speeds(settings: JointSettings, limits: MoveLimits) -> tuple[float, floa
         If the joint may not turn that fast.
     """
     lower_line, upper_line = settings.reducer.output_orders
-    natural, rate = settings.dynamics.natural_frequency, settings.input.expected_rate
-    if settings.sensorless:
-        low, high = 2.0 * LOWEST_FREQUENCY, HIGHEST_SHARE * rate
-    else:
-        low, high = BAND[0] * natural, min(BAND[1] * natural, HIGHEST_SHARE * rate)
     standing = settings.analysis.minimum_speed * math.tau / 60.0 / settings.reducer.reduction
-    slowest, fastest = low * math.tau / lower_line, min(high * math.tau / upper_line, limits.speed)
-    if not settings.sensorless and fastest < slowest:  # below the resonance the lines are weaker, but they are there
-        slowest = 0.5 * fastest
-    if not slowest < fastest or fastest <= 2.0 * standing:
+    if settings.sensorless:
+        standing = max(standing, LOWEST_FREQUENCY * math.tau / lower_line)
+    natural = settings.dynamics.natural_frequency
+    high = min(BAND[1] * natural, HIGHEST_SHARE * settings.input.expected_rate)
+    fastest = min(high * math.tau / upper_line, limits.speed)
+    if fastest <= 2.0 * standing:
         raise ParameterError(
             f"at up to {limits.speed:g} rad/s the lines stay below {limits.speed * upper_line / math.tau:.3g} Hz, too "
             "slow to tell anything; allow more speed, or a higher rate in input.expected_rate"
         )
+    # Below the resonance the lines are weaker, but they are there
+    slowest = min(BAND[0] * natural * math.tau / lower_line, 0.5 * fastest)
     return max(slowest, 1.5 * standing), fastest
 
 

@@ -7,6 +7,7 @@ from ..adapters import Inputs
 from ..assessment import Assessment
 from ..contract import NANOSECONDS
 from ..evidence import SomeIdentifier
+from ..history.rating import Baseline
 from ..monitor import Monitor
 from .bag import Bag
 from .batches import Window
@@ -25,9 +26,10 @@ class Replayed(NamedTuple):
 class _Channel:
     """One joint's monitor with its inputs."""
 
-    def __init__(self, plan: JointPlan, identifier: SomeIdentifier | None) -> None:
+    def __init__(self, plan: JointPlan, identifier: SomeIdentifier | None, baseline: Baseline | None) -> None:
         self.plan = plan
         self.monitor = Monitor(plan.settings, identifier)
+        self.monitor.baseline = baseline
         self._inputs = Inputs(plan.joint, plan.settings, self.monitor)
         self._timeout = round(plan.settings.input.timeout * NANOSECONDS)
         self._heard: int | None = None
@@ -57,6 +59,7 @@ def replay(
     plans: Sequence[JointPlan],
     progress: Callable[[Window], None] | None = None,
     identifiers: Mapping[str, SomeIdentifier] | None = None,
+    baselines: Mapping[str, Baseline | None] | None = None,
 ) -> Iterator[Replayed]:
     """Put a recording through one monitor a joint, as fast as the machine allows.
 
@@ -68,6 +71,8 @@ def replay(
         Called with each window of messages after it has been fed.
     identifiers : mapping of str to Identifier or SensorlessIdentifier, optional
         By joint, those that go on with what they know from earlier recordings.
+    baselines : mapping of str to Baseline, optional
+        By joint, the lines as they should be, as far as they are known.
 
     Yields
     ------
@@ -75,8 +80,8 @@ def replay(
         Every assessment in the order of the stamps, joint by joint within some thousand messages; then each joint's
         last one.
     """
-    known = identifiers or {}
-    channels = [_Channel(plan, known.get(plan.joint)) for plan in plans]
+    known, sound = identifiers or {}, baselines or {}
+    channels = [_Channel(plan, known.get(plan.joint), sound.get(plan.joint)) for plan in plans]
     topics = {topic for plan in plans for topic in plan.topics.values()}
     pause = min(round(plan.settings.input.timeout * NANOSECONDS) for plan in plans)
     for window in bag.windows(topics, pause=pause):

@@ -8,6 +8,7 @@ from ..assessment import Assessment
 from ..evidence import SomeIdentifier, end_recording, new_identifier
 from ..history.diary import Diary
 from ..history.ledger import Ledger
+from ..history.rating import Baseline, baseline_of
 from .bag import Bag
 from .errors import BagError
 from .plan import JointPlan, Request, check_same_settings, plan
@@ -36,11 +37,12 @@ def run(
     plans: Sequence[JointPlan],
     listeners: Mapping[str, Callable[[Assessment], None]],
     identifiers: Mapping[str, SomeIdentifier] | None = None,
+    baselines: Mapping[str, Baseline | None] | None = None,
 ) -> list[JointResult]:
-    """Replay an open recording, with progress on standard error; `listeners` and `identifiers` are by joint."""
+    """Replay an open recording, with progress on standard error; the mappings are by joint."""
     results = {item.joint: JointResult(item) for item in plans}
     progress = ProgressLine(bag)
-    for said in replay(bag, plans, progress, identifiers):
+    for said in replay(bag, plans, progress, identifiers, baselines):
         joint = said.plan.joint
         results[joint].add(said)
         if joint in listeners and not said.last:
@@ -61,6 +63,13 @@ def _listener(
             ledger.append(entry)
 
     return listen
+
+
+def _baselines(plans: Sequence[JointPlan], ledger: Ledger | None) -> dict[str, Baseline | None]:
+    """Return each joint's lines as they should be, as far as the ledger knows them."""
+    if ledger is None:
+        return {}
+    return {item.joint: baseline_of(ledger.entries(item.settings.serial, item.joint)) for item in plans}
 
 
 def _collectors(plans: Sequence[JointPlan]) -> dict[str, "Collector"]:
@@ -91,7 +100,7 @@ def replay_bags(
     for_report : bool
         Whether to collect what the report draws.
     ledger : Ledger, optional
-        Where each recording gets its entries.
+        Where each recording gets its entries, and which knows the baselines that they are rated against.
 
     Raises
     ------
@@ -118,7 +127,7 @@ def replay_bags(
                     collectors = _collectors(plans) | collectors
                 diaries = {item.joint: Diary(item.joint, item.settings.history.interval, str(path)) for item in plans}
                 listeners = {item.joint: _listener(item.joint, collectors, diaries, ledger) for item in plans}
-                found = run(bag, plans, listeners, identifiers)
+                found = run(bag, plans, listeners, identifiers, _baselines(plans, ledger))
                 notes += [before + note for note in bag.notes]
         except BagError as error:
             raise error if str(path) in str(error) or not before else BagError(before + str(error)) from None

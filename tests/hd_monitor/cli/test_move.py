@@ -44,8 +44,9 @@ def test_both_directions_have_the_same_speeds_and_these_differ():
     assert len(tops[1.0]) >= 3
 
 
-def test_the_first_pair_passes_the_resonance_with_a_sensor():
-    settings = JointSettings.from_mapping({"dynamics.natural_frequency": 40.0})
+@pytest.mark.parametrize("source", ["block", "joint_effort"])
+def test_the_first_pair_passes_the_resonance(source):
+    settings = JointSettings.from_mapping({"dynamics.natural_frequency": 40.0, "input.source": source})
     slowest, fastest = top_speeds(settings, limits_of())
     assert slowest * 160 / math.tau == pytest.approx(20.0)
     assert fastest * 162 / math.tau == pytest.approx(52.0)

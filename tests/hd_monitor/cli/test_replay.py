@@ -180,13 +180,13 @@ def test_a_period_longer_than_the_recording_does_not_withhold_the_verdict(
     assert joint["verdict"]["fault_code"] == code
 
 
-def swinging_arm(folder: Path, seed: int) -> Path:
-    """Joint states of a joint whose circular spline's line is too weak to be named in one recording."""
+def swinging_arm(folder: Path, seed: int, line: float = 0.025) -> Path:
+    """Joint states with a line of the circular spline [N·m], by default too weak to be named in one recording."""
     rng = np.random.default_rng(seed)
     times = np.arange(0.0, 30.0, 0.01)
     angle = 1.4 * np.sin(0.55 * times) + 0.2 * np.sin(1.3 * times)
     speed = 0.77 * np.cos(0.55 * times) + 0.26 * np.cos(1.3 * times)
-    effort = 4.0 * np.sin(angle) + 0.025 * np.cos(160 * angle + seed) + 0.25 * rng.standard_normal(times.size)
+    effort = 4.0 * np.sin(angle) + line * np.cos(160 * angle + seed) + 0.25 * rng.standard_normal(times.size)
     stamps = (rec.START + 3600 * seed * 10**9 + np.rint(1e9 * times)).astype(int).tolist()
     rows = zip(stamps, angle.tolist(), speed.tolist(), effort.tolist(), strict=True)
     events = [rec.Event(stamp, "/joint_states", rec.joint_state(stamp, joint=(a, v, e))) for stamp, a, v, e in rows]
@@ -210,6 +210,19 @@ def test_several_recordings_are_one_history(tmp_path: Path) -> None:
     stamps = [entry["stamp"] for entry in joint["timeline"]]
     assert stamps == sorted(set(stamps))
     assert stamps[-1] - stamps[0] > 5 * 3600 * 10**9
+
+
+def test_recordings_are_rated_against_the_ledgers_baseline(tmp_path: Path) -> None:
+    history = ("--history", str(tmp_path / "ledger.sqlite"))
+    given = (*history, "-p", "input.source:=joint_effort")
+
+    def code_of(seed: int, line: float) -> str:
+        (joint,) = result_of(swinging_arm(tmp_path, seed, line), tmp_path, *given)["joints"]
+        return str(joint["verdict"]["fault_code"])
+
+    assert [code_of(seed, 0.3) for seed in range(3)] == ["HD_UNRATED"] * 3
+    assert main(["history", *history, "--set-baseline"]) == 0
+    assert [code_of(3, 0.3), code_of(4, 0.45)] == ["HD_OK", "HD_CIRCULAR_SPLINE"]
 
 
 def test_a_history_names_the_recording_that_cannot_be_used(

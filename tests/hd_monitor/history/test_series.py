@@ -1,4 +1,5 @@
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -55,6 +56,19 @@ def test_lines_from_joint_states_are_those_of_the_entrys_own_motion():
     found = named([entry(lines=(9.0, 9.0), evidence=(direction(), direction("reverse", (5.0, 1.0))), relative=True)])
     assert found["circular spline line 1"].values == pytest.approx([4.0])
     assert found["circular spline line 1"].stds == pytest.approx([0.1 / math.sqrt(2.0)])
+
+
+def test_skirts_do_not_count_where_the_baselines_motion_is_repeated():
+    one = (replace(direction(), floor=9.0), replace(direction("reverse"), floor=9.0))
+    other = tuple(replace(piece, speed=0.52) for piece in one)
+    motions = [one, one, one, one, other]
+    entries = [entry(time=float(t), seconds=1000.0, evidence=motion) for t, motion in enumerate(motions)]
+    wide = 0.1 / math.sqrt(2.0)
+    assert named(entries)["flexspline line 1"].stds == pytest.approx([wide / 3.0] * 4 + [wide])
+    assert named(entries)["flexspline line 1"].motion == one
+    # Where the baseline's motions differ, or are too few to show how well they repeat
+    assert named([entries[4], *entries[:3]])["flexspline line 1"].stds == pytest.approx([wide] * 4)
+    assert named(entries[:2])["flexspline line 1"].stds == pytest.approx([wide] * 2)
 
 
 def test_the_first_hour_of_motion_is_the_baseline():
