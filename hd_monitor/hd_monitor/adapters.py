@@ -27,7 +27,7 @@ class Sink(Protocol):
     """What an adapter feeds: the input side of :class:`hd_monitor.monitor.Monitor`."""
 
     def add(self, quantity: Quantity, stamps: IntArray, *columns: FloatArray) -> None:
-        """Take samples with their stamps [ns]: θ'' [rad/s²]; position, velocity and effort; or torque [N·m]."""
+        """Take samples with their stamps [ns]: θ'' [rad/s²]; position, velocity and effort; torque; temperature."""
 
     def add_block(self, block: contract.Block) -> None:
         """Take a block of samples of θ'' [rad/s²]."""
@@ -51,7 +51,7 @@ class Inputs:
     def __init__(self, joint: str, settings: JointSettings, sink: Sink) -> None:
         self._sink = sink
         self._settings = settings
-        self._sources = settings.sources
+        self._sources = settings.all_sources
         self._joint = settings.input.joint_name or joint
         self._takes_any = not settings.input.joint_name and joint == UNNAMED_JOINT
         self._joint_seen = False

@@ -55,6 +55,8 @@ class Assessment:
     torque_source : str
         Where the transmitted torque came from: ``effort``, ``parameter``, ``assumed`` (the parameter stands in for
         efforts that are not measured) or ``unknown``.
+    temperature : float
+        Of the reducer [°C]; NaN where none is measured.
     extra : tuple of (str, str)
         Further keys and values for the status.
     """
@@ -74,6 +76,7 @@ class Assessment:
     torque_source: str = "unknown"
     records: tuple[Record, ...] = ()
     joint_samples: JointSamples | None = None
+    temperature: float = math.nan
     extra: tuple[tuple[str, str], ...] = ()
 
     @property

@@ -82,6 +82,14 @@ def _parse_imu(message: bytes) -> Layout[None]:
     return template.layout(None)
 
 
+def _parse_temperature(message: bytes) -> Layout[None]:
+    template = Template(message)
+    template.stamp()
+    template.doubles("temperature", 1)
+    template.doubles("variance", 1)
+    return template.layout(None)
+
+
 def _parse_joint_state(message: bytes) -> Layout[tuple[str, ...]]:
     template = Template(message)
     template.stamp()
@@ -145,6 +153,29 @@ def decode_vectors(messages: Sequence[bytes]) -> Samples:
 def decode_imu(messages: Sequence[bytes]) -> Samples:
     """Decode serialised ``sensor_msgs/Imu`` messages, in their order; see :func:`decode_vectors`."""
     return _samples(messages, _parse_imu)
+
+
+def decode_temperatures(messages: Sequence[bytes]) -> tuple[IntArray, FloatArray, tuple[str, ...]]:
+    """Decode serialised ``sensor_msgs/Temperature`` messages, in their order.
+
+    Returns
+    -------
+    stamps, values : ndarray, shape (N,)
+        Header stamps [ns] and temperatures [°C].
+    faults : tuple of str
+        The reason for each message that could not be read.
+    """
+    faults: list[Fault] = []
+    readings = sorted(
+        (at, stamp, value)
+        for place, rows, _ in groups_of(messages, _parse_temperature, faults)
+        for at, stamp, value in zip(
+            place.tolist(), _stamps(rows).tolist(), rows["temperature"][:, 0].tolist(), strict=True
+        )
+    )
+    stamps = np.array([stamp for _, stamp, _ in readings], dtype=np.int64)
+    values = np.array([value for _, _, value in readings], dtype=np.float64)
+    return stamps, values, tuple(fault.reason for fault in sorted(faults))
 
 
 def decode_joint_states(messages: Sequence[bytes]) -> tuple[list[JointStates], list[Fault]]:

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from .acquisition.intake import Intake
 from .acquisition.presence import Presence
 from .acquisition.recorder import AssembledPeriod, Recorder
+from .acquisition.thermometer import Thermometer
 from .acquisition.timeline import Period
 from .assessment import Assessment
 from .contract import Block
@@ -78,6 +79,7 @@ class Monitor:
         self._recorder = Recorder(settings)
         self._intake = Intake(settings, self._recorder.count)
         self._presence = Presence(settings)
+        self._thermometer = Thermometer()
         self._evidence = Evidence(settings, identifier)
         self._judge = Judge(settings)
         self._recalled = recalled is not None
@@ -97,8 +99,11 @@ class Monitor:
             [ns].
         *columns : array_like
             Of a vibration θ'' [rad/s²]; of a motion the output-side position [rad], velocity [rad/s] and effort
-            [N·m], NaN where a message lacks one; of a torque the one transmitted [N·m].
+            [N·m], NaN where a message lacks one; of a torque the one transmitted [N·m]; of a temperature [°C].
         """
+        if quantity is Quantity.TEMPERATURE:
+            self._thermometer.add(np.asarray(stamps, dtype=np.int64), np.asarray(columns[0], dtype=np.float64))
+            return
         rows = np.column_stack([np.asarray(column, dtype=np.float64) for column in columns])
         self._intake.add(quantity, np.asarray(stamps, dtype=np.int64), rows)
 
@@ -234,6 +239,7 @@ class Monitor:
             speed=evidence.speed(assembled) if assembled is not None else math.nan,
             rms=evidence.level(assembled) if assembled is not None else math.nan,
             torque_source=self._recorder.torque_source,
+            temperature=self._thermometer.at(stamp),
             records=assembled.records if assembled is not None else (),
             joint_samples=assembled.joint_samples if assembled is not None else None,
         )

@@ -25,6 +25,7 @@ class Quantity(StrEnum):
     VIBRATION = "vibration"
     MOTION = "motion"
     TORQUE = "torque"
+    TEMPERATURE = "temperature"
 
 
 class Stamped(NamedTuple):
@@ -33,7 +34,7 @@ class Stamped(NamedTuple):
     stamps: IntArray
     """Sampling instants [ns], shape (N,)."""
     values: FloatArray
-    """θ'' [rad/s²] of a vibration, or torque [N·m]; shape (N,)."""
+    """θ'' [rad/s²] of a vibration, torque [N·m] or temperature [°C]; shape (N,)."""
 
 
 Decoded = Stamped | contract.Block | str
@@ -103,6 +104,13 @@ def _decode_vectors(
     return decoder
 
 
+def _decode_temperatures(messages: Sequence[bytes], _: "JointSettings") -> Iterator[Decoded]:
+    stamps, values, faults = cdr.decode_temperatures(messages)
+    yield from faults
+    if stamps.size:
+        yield Stamped(stamps, values)
+
+
 def _along(axis: str, vectors: FloatArray) -> FloatArray:
     """Components of vectors, shape (N, 3), along an axis as the parameters name it, ``-z`` say; shape (N,)."""
     component = vectors[:, "xyz".index(axis[-1])]
@@ -160,3 +168,11 @@ LOAD_SOURCES: Mapping[str, Source | None] = {
     "unknown": None,
 }
 """The words of ``load.source``; None where the torque needs no topic besides joint states."""
+
+TEMPERATURE = Source(
+    quantity=Quantity.TEMPERATURE,
+    topic=contract.TEMPERATURE,
+    type="sensor_msgs/Temperature",
+    decode=_decode_temperatures,
+)
+"""The reducer's temperature, which no verdict needs and the ledger keeps."""

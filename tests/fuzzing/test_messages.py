@@ -29,12 +29,14 @@ WHOLE = {
     "std_msgs/Float64MultiArray": recordings.block(START, 1e-3, 7, [0.5, -0.25, math.nan]),
     "geometry_msgs/AccelStamped": recordings.accel(START, 3.0),
     "geometry_msgs/WrenchStamped": recordings.wrench(START, 3.0),
+    "sensor_msgs/Temperature": recordings.temperature(START, 31.0),
     "sensor_msgs/Imu": recordings.imu(START, 3.0),
     "sensor_msgs/JointState": recordings.joint_state(START, joint=(0.1, 0.2, 0.3), other=(0.4, 0.5, 0.6)),
 }
 SOURCES: dict[str, dict[str, Any]] = {
     **{f"input.source: {word}": {"input.source": word, "input.sensor_radius": 0.5} for word in INPUT_SOURCES},
     **{f"load.source: {word}": {"load.source": word} for word, source in LOAD_SOURCES.items() if source},
+    "input.temperature_topic": {"input.temperature_topic": "temperature"},
 }
 
 
@@ -60,8 +62,9 @@ class Counter:
 def test_damaged_messages(setting: str) -> None:
     """What is whole in a batch is taken, whatever stands beside it."""
     settings = JointSettings.from_mapping(SOURCES[setting])
-    quantity = Quantity.TORQUE if setting.startswith("load") else next(iter(settings.sources))
-    whole = serialised(WHOLE[settings.sources[quantity].type])
+    extra = {"load": Quantity.TORQUE, "input.temperature_topic": Quantity.TEMPERATURE}
+    quantity = extra.get(setting.partition(".source")[0], next(iter(settings.sources)))
+    whole = serialised(WHOLE[settings.all_sources[quantity].type])
 
     def decode(messages: list[bytes]) -> None:
         counter = Counter()

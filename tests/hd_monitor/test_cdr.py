@@ -60,6 +60,11 @@ def imu(head: tuple[int, int, str], linear: Any, angular: Any, *, little_endian:
     return raw(message, "sensor_msgs/msg/Imu", little_endian=little_endian)
 
 
+def temperature(head: tuple[int, int, str], value: float, *, little_endian: bool = True) -> bytes:
+    message = T["sensor_msgs/msg/Temperature"](header(*head), value, 0.25)
+    return raw(message, "sensor_msgs/msg/Temperature", little_endian=little_endian)
+
+
 def joint_state(
     head: tuple[int, int, str], names: list[str], arrays: list[list[float]], *, little_endian: bool = True
 ) -> bytes:
@@ -92,6 +97,16 @@ def test_vectors_keep_their_order_for_mixed_frames_and_byte_orders(write: Any, r
     assert samples.stamps.tolist() == [stamp(head) for head, *_ in rows]
     np.testing.assert_array_equal(samples.linear, np.array([row[1] for row in rows]).reshape(-1, 3))
     np.testing.assert_array_equal(samples.angular, np.array([row[2] for row in rows]).reshape(-1, 3))
+
+
+@settings(max_examples=60)
+@given(rows=st.lists(st.tuples(headers, doubles, st.booleans()), max_size=8))
+def test_temperatures_keep_their_order_for_mixed_frames_and_byte_orders(rows: list[Any]) -> None:
+    messages = [temperature(head, value, little_endian=little) for head, value, little in rows]
+    stamps, values, faults = cdr.decode_temperatures([*messages, *(message[:-1] for message in messages[:1])])
+    assert len(faults) == len(messages[:1])
+    assert stamps.tolist() == [stamp(head) for head, *_ in rows]
+    np.testing.assert_array_equal(values, np.array([row[1] for row in rows]))
 
 
 @st.composite

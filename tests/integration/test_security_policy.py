@@ -12,7 +12,7 @@ from .conftest import MONITOR, RIG, Bench
 pytestmark = pytest.mark.ros
 
 POLICY = Path(__file__).resolve().parents[2] / "config" / "security_policy.xml"
-OPTIONAL = {"torsional_acceleration", "imu/data_raw", "wrench", "clock"}
+OPTIONAL = {"torsional_acceleration", "imu/data_raw", "wrench", "temperature", "clock"}
 """Inputs that some parameters name."""
 
 

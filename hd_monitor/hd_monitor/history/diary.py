@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from ..arrays import FloatArray
 from ..assessment import Assessment
 from ..diagnosis.verdict import FaultCode
 from .entry import Entry, Kind
@@ -57,8 +58,12 @@ class Diary:
 
     def _entry(self, assessment: Assessment, kind: Kind) -> Entry:
         entry = Entry.of(assessment, self._joint, kind=kind, recording=self._recording)
-        torque = self._torque / self._torque_samples if self._torque_samples else math.nan
-        entry = entry.with_motion(revolutions=self._revolutions, seconds=self._seconds, torque=torque)
+        entry = entry.with_motion(
+            revolutions=self._revolutions,
+            seconds=self._seconds,
+            torque=self._torque.mean,
+            temperature=self._temperature.mean,
+        )
         self._clear()
         return entry
 
@@ -68,11 +73,25 @@ class Diary:
             self._seconds += settings.period
             self._revolutions += speed * settings.period / 60.0
         if assessment.joint_samples is not None:
-            effort = assessment.joint_samples.effort
-            effort = effort[np.isfinite(effort)]
-            self._torque += float(effort.sum())
-            self._torque_samples += effort.size
+            self._torque.add(assessment.joint_samples.effort)
+        self._temperature.add(np.array([assessment.temperature]))
 
     def _clear(self) -> None:
-        self._seconds = self._revolutions = self._torque = 0.0
-        self._torque_samples = 0
+        self._seconds = self._revolutions = 0.0
+        self._torque, self._temperature = _Mean(), _Mean()
+
+
+class _Mean:
+    """Mean of the finite ones of values that come bit by bit."""
+
+    def __init__(self) -> None:
+        self._sum, self._count = 0.0, 0
+
+    def add(self, values: FloatArray) -> None:
+        finite = values[np.isfinite(values)]
+        self._sum += float(finite.sum())
+        self._count += finite.size
+
+    @property
+    def mean(self) -> float:
+        return self._sum / self._count if self._count else math.nan

@@ -62,7 +62,7 @@ class Entry:
     torque : float
         Mean effort over that motion [N·m, or the effort's own unit]; NaN where none is measured.
     temperature : float
-        [°C]; NaN where none is measured.
+        Mean temperature over that motion [°C]; NaN where none is measured.
     source : str
         ``input.source``: lines of different signals cannot be compared.
     recording : str
@@ -125,10 +125,12 @@ class Entry:
             evidence=found.evidence,
         )
 
-    def with_motion(self, *, revolutions: float, seconds: float, torque: float) -> Self:
+    def with_motion(self, *, revolutions: float, seconds: float, torque: float, temperature: float) -> Self:
         """Return the entry with the motion since the one before."""
         speed = revolutions / seconds * 60.0 if seconds else math.nan
-        return replace(self, revolutions=revolutions, seconds=seconds, speed=speed, torque=torque)
+        return replace(
+            self, revolutions=revolutions, seconds=seconds, speed=speed, torque=torque, temperature=temperature
+        )
 
     def content(self) -> dict[str, Any]:
         """Write what is in no column of its own as plain data, fit for JSON."""

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -38,6 +39,8 @@ class Series:
         [s] on the messages' clock.
     revolutions : ndarray, shape (points,)
         Of the wave generator since the reducer was first seen.
+    temperatures : ndarray, shape (points,)
+        Of the reducer [°C]; NaN where none was measured.
     values, stds : ndarray, shape (points,)
         With the standard deviation that each measurement had by itself, as a repetition where it is one of the
         baseline's motion.
@@ -53,12 +56,24 @@ class Series:
     unit: str
     times: FloatArray
     revolutions: FloatArray
+    temperatures: FloatArray
     values: FloatArray
     stds: FloatArray
     is_baseline: np.typing.NDArray[np.bool_]
     warn: float = math.nan
     error: float = math.nan
     motion: Motion = ()
+
+
+class _Row(NamedTuple):
+    """One point of a series."""
+
+    time: float
+    revolutions: float
+    temperature: float
+    value: float
+    std: float
+    is_baseline: bool
 
 
 def series_of(entries: Sequence[Entry]) -> list[Series]:
@@ -71,12 +86,12 @@ def series_of(entries: Sequence[Entry]) -> list[Series]:
     kept = [(entry, total) for entry, total in kept if entry.source == kept[-1][0].source]
     base = _baseline(entries, [entry for entry, _ in kept])
     repeated = _repeated_motion([entry for (entry, _), is_base in zip(kept, base, strict=True) if is_base])
-    columns: dict[str, list[tuple[float, float, float, float, bool]]] = {}
+    columns: dict[str, list[_Row]] = {}
     about: dict[str, tuple[str, float, float]] = {}
     for (entry, total), is_base in zip(kept, base, strict=True):
         for name, unit, value, std, warn, error in _readings(entry, repeated):
             if math.isfinite(value) and math.isfinite(std) and std > 0.0:
-                columns.setdefault(name, []).append((entry.time, total, value, std, is_base))
+                columns.setdefault(name, []).append(_Row(entry.time, total, entry.temperature, value, std, is_base))
                 about[name] = unit, warn, error
     return [_series(name, *about[name], repeated, rows) for name, rows in columns.items()]
 
@@ -87,14 +102,15 @@ def _series(
     warn: float,
     error: float,
     motion: Motion,
-    rows: Iterable[tuple[float, float, float, float, bool]],
+    rows: Iterable[_Row],
 ) -> Series:
-    times, revolutions, values, stds, base = (np.array(column) for column in zip(*rows, strict=True))
+    times, revolutions, temperatures, values, stds, base = (np.array(column) for column in zip(*rows, strict=True))
     return Series(
         name=name,
         unit=unit,
         times=times,
         revolutions=revolutions,
+        temperatures=temperatures,
         values=values,
         stds=stds,
         is_baseline=base.astype(bool),

@@ -2,6 +2,7 @@
 
 import csv
 import io
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -10,15 +11,25 @@ from typing import Any
 from .. import __version__
 from ..change import Change
 from ..diagnosis.verdict import Verdict
-from ..history.entry import Entry
+from ..history.entry import Entry, Kind
 from ..history.ledger import Ledger, Reducer
 from ..history.series import Series, series_of
 from ..history.trend import Slope, Step, change_of, slope_of, step_of
 from .errors import BagError
 from .result import plain
 
-COLUMNS = ("serial", "joint", "time", "revolutions", "reading", "unit", "value", "std", "is_baseline")
+COLUMNS = ("serial", "joint", "time", "revolutions", "reading", "unit", "value", "std", "is_baseline", "temperature")
 """Of a row for each value, as CSV and Parquet have them."""
+
+_POINT = {
+    "time": "times",
+    "revolutions": "revolutions",
+    "value": "values",
+    "std": "stds",
+    "is_baseline": "is_baseline",
+    "temperature": "temperatures",
+}
+"""Keys of a value in JSON, and the columns of a series that they are of."""
 
 _DECADES = ((365.25, "years"), (30.4, "months"), (1.0, "days"), (1.0 / 24.0, "hours"))
 
@@ -67,6 +78,14 @@ class ReducerHistory:
     def verdict(self) -> Verdict | None:
         """The last one."""
         return next((entry.verdict for entry in reversed(self.entries) if entry.verdict is not None), None)
+
+    @property
+    def seen(self) -> str:
+        """When it was seen last, and how warm."""
+        if not self.entries:
+            return "never"
+        warm = next((e.temperature for e in reversed(self.entries) if e.kind is Kind.EVIDENCE), math.nan)
+        return f"{date(self.entries[-1].time)} UTC" + (f", {warm:.1f} °C" if math.isfinite(warm) else "")
 
     @property
     def joint(self) -> str:
@@ -133,15 +152,14 @@ def _verdict(history: ReducerHistory) -> dict[str, Any] | None:
 
 def _reading(reading: Reading) -> dict[str, Any]:
     series, change, slope, step = reading.series, reading.change, reading.slope, reading.step
-    columns = zip(*(getattr(series, name).tolist() for name in ("times", "revolutions", "values", "stds")), strict=True)
     return {
         "reading": series.name,
         "unit": series.unit,
         "warn_limit": series.warn,
         "error_limit": series.error,
         "values": [
-            {"time": time, "revolutions": turns, "value": value, "std": std, "is_baseline": base}
-            for (time, turns, value, std), base in zip(columns, series.is_baseline.tolist(), strict=True)
+            dict(zip(_POINT, point, strict=True))
+            for point in zip(*(getattr(series, column).tolist() for column in _POINT.values()), strict=True)
         ],
         "change": change and change.as_dict(),
         "slope": slope and slope._asdict(),
@@ -168,6 +186,7 @@ def _reading_rows(history: ReducerHistory) -> Iterator[tuple[Any, ...]]:
                 float(series.values[place]),
                 float(series.stds[place]),
                 bool(series.is_baseline[place]),
+                float(series.temperatures[place]),
             )
 
 
@@ -185,10 +204,9 @@ def table(histories: Sequence[ReducerHistory]) -> str:
     for history in histories:
         verdict = history.verdict
         shown = f"{verdict.level.name}, {verdict.component.value}" if verdict else "no verdict"
-        since = date(history.entries[-1].time) if history.entries else "never"
         turns = sum(entry.revolutions for entry in history.entries)
         place = f", {history.joint}" if history.reducer.serial and history.joint else ""
-        lines.append(f"{history.reducer}{place}: {shown} ({since})")
+        lines.append(f"{history.reducer}{place}: {shown} ({history.seen})")
         lines.append(f"  {len(history.entries)} entries over {turns:.0f} revolutions of the wave generator")
         for reading in history.readings:
             series = reading.series

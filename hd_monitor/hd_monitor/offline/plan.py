@@ -93,7 +93,10 @@ def plan(bag: Bag, request: Request) -> list[JointPlan]:
     for joint, own in settings.items():
         if request.joints and joint not in request.joints:
             continue
-        topics = finder.joint_topics(own.sources, joint if len(settings) > 1 else None)
+        below = joint if len(settings) > 1 else None
+        topics = finder.joint_topics(own.sources, below)
+        extra = {quantity: source for quantity, source in own.all_sources.items() if quantity not in topics}
+        topics |= finder.joint_topics({q: source for q, source in extra.items() if finder.has(source)}, below)
         messages = {quantity: recorded[topic] for quantity, topic in topics.items()}
         plans.append(JointPlan(joint, own, topics, messages, tuple(notes)))
     return plans

@@ -65,7 +65,7 @@ class JointChannel:
         """Subscribe to what is the joint's own, `motion` being all joints'; silence counts from `now` [ns]."""
         self._motion = motion
         self._warn_of_short_queue()
-        for quantity, source in self.watch.settings.sources.items():
+        for quantity, source in self.watch.settings.all_sources.items():
             if quantity is not Quantity.MOTION:
                 self._subscriptions[quantity] = DrainedSubscription(
                     self._node,

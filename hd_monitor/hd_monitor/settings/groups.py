@@ -12,9 +12,23 @@ AXES = ("x", "y", "z", "-x", "-y", "-z")
 _TOPIC = re.compile(r"/?[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*")
 
 
+def _check_topic(parameter: str, topic: str) -> None:
+    if topic and not _TOPIC.fullmatch(topic):
+        raise ParameterError(
+            f"{parameter} = {topic!r} is not a topic's name; it has words of letters, digits and underscores with "
+            "single slashes between, as in ft_sensor/wrench"
+        )
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class InputSettings:
-    """The parameters ``input.*``."""
+    """The parameters ``input.*``.
+
+    Raises
+    ------
+    ParameterError
+        If the topic is not a name that ROS allows.
+    """
 
     source: str = choice(
         "block", INPUT_SOURCES, "the vibration signal; joint_effort and joint_velocity need joint_states only"
@@ -95,6 +109,15 @@ class InputSettings:
         1e9,
         "full scale of the sensor, above which samples count as clipped; 0: recognise flat tops",
     )
+    temperature_topic: str = plain(
+        "",
+        "topic of the reducer's temperature (sensor_msgs/Temperature), below the joint's name with several joints; the "
+        "ledger keeps it beside the readings; empty: none",
+    )
+
+    def __post_init__(self) -> None:
+        """Refuse a topic that cannot be subscribed to."""
+        _check_topic("input.temperature_topic", self.temperature_topic)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -142,11 +165,7 @@ class LoadSettings:
 
     def __post_init__(self) -> None:
         """Refuse a topic that cannot be subscribed to."""
-        if self.topic and not _TOPIC.fullmatch(self.topic):
-            raise ParameterError(
-                f"load.topic = {self.topic!r} is not a topic's name; it has words of letters, digits and underscores "
-                "with single slashes between, as in ft_sensor/wrench"
-            )
+        _check_topic("load.topic", self.topic)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

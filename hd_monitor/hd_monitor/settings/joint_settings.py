@@ -8,7 +8,7 @@ from ..errors import ParameterError
 from ..model.parameters import Dynamics
 from ..parameter import Value, check_all, fill_group
 from ..reducer import Reducer
-from ..sources import INPUT_SOURCES, JOINT_STATES, LOAD_SOURCES, Quantity, Source
+from ..sources import INPUT_SOURCES, JOINT_STATES, LOAD_SOURCES, TEMPERATURE, Quantity, Source
 from .groups import AnalysisSettings, DiagnosisSettings, HistorySettings, InputSettings, LoadSettings
 from .table import PARAMETERS
 from .uncertainty import Uncertainty
@@ -84,3 +84,10 @@ class JointSettings:
         if torque is not None and not self.sensorless:
             needed.append(replace(torque, topic=self.load.topic or torque.topic))
         return {source.quantity: source for source in needed}
+
+    @property
+    def all_sources(self) -> dict[Quantity, Source]:
+        """The inputs that the joint needs, and the temperature, which it does not."""
+        if not self.input.temperature_topic:
+            return self.sources
+        return self.sources | {Quantity.TEMPERATURE: replace(TEMPERATURE, topic=self.input.temperature_topic)}

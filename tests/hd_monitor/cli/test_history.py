@@ -55,7 +55,7 @@ def test_the_table_says_what_changed_and_when_the_limit_is_reached(
 ) -> None:
     assert main(["history", "--history", str(ledger)]) == 0
     text = capsys.readouterr().out
-    assert "BAD, arm: WARN, flexspline (2023-12-03 22:13)" in text
+    assert "BAD, arm: WARN, flexspline (2023-12-03 22:13 UTC)" in text
     assert "20 entries over 40000 revolutions of the wave generator" in text
     said = re.findall(r"flexspline index: changes by 0\.\d+ % ± \S+ % a day; the limit is (\S+) to (\S+) days", text)
     low, high = map(float, said[0])
@@ -80,6 +80,16 @@ def test_json_has_every_reading_with_its_change(ledger: Path) -> None:
     assert found["elbow"]["verdict"]["component"] == "flexspline"
     assert not any("index" in reading["reading"] for reading in found["elbow"]["readings"])
     assert set(result_of(ledger, "--serial", "GOOD")) == {"GOOD"}
+
+
+def test_the_temperature_stands_beside_the_readings(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "warm.sqlite"
+    with Ledger(path) as file:
+        file.append(entry(time=START))
+        file.append(entry(time=START + DAY, temperature=31.25))
+    (reading, *_) = result_of(path)["S1"]["readings"]
+    assert [value["temperature"] for value in reading["values"]] == [None, 31.25]
+    assert "(2023-11-15 22:13 UTC, 31.2 °C)" in capsys.readouterr().out
 
 
 def test_csv_has_a_row_for_each_value(ledger: Path, tmp_path: Path) -> None:

@@ -212,6 +212,22 @@ def test_several_recordings_are_one_history(tmp_path: Path) -> None:
     assert stamps[-1] - stamps[0] > 5 * 3600 * 10**9
 
 
+def test_the_ledger_keeps_the_temperature_where_it_was_recorded(recording: Path, tmp_path: Path) -> None:
+    warm = [
+        rec.Event(rec.START + second * 10**9, "/gearbox", rec.temperature(rec.START + second * 10**9, 30.0 + second))
+        for second in (0, 4)
+    ]
+    own = rec.write(tmp_path / "warm", [*rec.simulated(duration=6.0, programme="fixed"), *warm])
+    file = tmp_path / "ledger.sqlite"
+    for bag in (own, recording):
+        given = ("-p", "input.temperature_topic:=gearbox", "-p", f"reducer.serial:={bag.name}")
+        assert main(["replay", str(bag), "--history", str(file), *given]) == 0
+    with Ledger(file) as ledger:
+        (*_, last), (*_, other) = ledger.entries(own.name), ledger.entries(recording.name)
+    assert 30.0 < last.temperature <= 34.0
+    assert math.isnan(other.temperature)
+
+
 def test_recordings_are_rated_against_the_ledgers_baseline(tmp_path: Path) -> None:
     history = ("--history", str(tmp_path / "ledger.sqlite"))
     given = (*history, "-p", "input.source:=joint_effort")

@@ -17,6 +17,7 @@ def series(values, std=0.01, base=3, warn=math.nan, error=math.nan):
         unit="",
         times=DAY * days,
         revolutions=1e5 * days,
+        temperatures=np.full(values.size, math.nan),
         values=values,
         stds=np.full(values.size, std),
         is_baseline=days < base,

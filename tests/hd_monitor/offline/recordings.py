@@ -58,6 +58,10 @@ def wrench(stamp: int, torque: float) -> Any:
     return TYPES["geometry_msgs/msg/WrenchStamped"](header(stamp), body)
 
 
+def temperature(stamp: int, celsius: float) -> Any:
+    return TYPES["sensor_msgs/msg/Temperature"](header(stamp), celsius, 0.0)
+
+
 def imu(stamp: int, tangential: float) -> Any:
     vector, nine = TYPES["geometry_msgs/msg/Vector3"], np.zeros(9)
     orientation = TYPES["geometry_msgs/msg/Quaternion"](0.0, 0.0, 0.0, 1.0)

@@ -10,7 +10,7 @@ import numpy as np
 from ...diagnosis.verdict import Level
 from ...history.series import SPLINES, Series
 from ...history.trend import BANDS
-from ..history import Reading, ReducerHistory, date
+from ..history import Reading, ReducerHistory
 from ..plots.readings import readings_plot
 from ..plots.style import png
 from .page import write_page
@@ -44,7 +44,7 @@ def _section(history: ReducerHistory) -> dict[str, Any]:
         "level": Level(verdict.level).name if verdict else "none",
         "component": verdict.component.value.replace("_", " ") if verdict else "no verdict yet",
         "reason": verdict.reason if verdict else "",
-        "seen": date(history.entries[-1].time) if history.entries else "never",
+        "seen": history.seen,
         "entries": len(history.entries),
         "bars": [_bar(reading.series) for reading in shown if math.isfinite(reading.series.error)],
         "sparklines": [_sparkline(reading.series) for reading in shown],
