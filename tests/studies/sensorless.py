@@ -40,6 +40,9 @@ UR10E = {
 TRUTHS = [(0.0, 0.0), (0.3, 0.3), (1.0, 1.0), (0.3, 0.1), (0.1, 0.3), (1.0, 0.3), (0.3, 1.0), (1.0, 0.7), (0.7, 1.0)]
 PLACEBO_TEETH = [(z, z + 2) for z in (*range(188, 193), *range(208, 213), 80, 100, 120, 160, 180, 220, 240, 300)]
 
+REPEATED = 0.1
+"""Part of the motion that may come again at a shift, at the same speed within 2 %."""
+
 
 def verdict(found: Identification | None, settings: JointSettings) -> Component:
     """Component that the monitor would show if this evidence stays."""
@@ -196,16 +199,27 @@ def study_recordings(folder: Path) -> list[str]:
     return rows
 
 
-def phase_randomised(values: FloatArray, rng: np.random.Generator) -> FloatArray:
-    """Values with the same spectrum and nothing else in common with the motion."""
+def phase_randomised(samples: JointSamples, rng: np.random.Generator) -> FloatArray:
+    """Effort with the same spectrum and nothing else in common with the motion."""
+    values = samples.effort
     spectrum = np.fft.rfft(values - values.mean())
     turned = np.abs(spectrum) * np.exp(1j * rng.uniform(0.0, math.tau, spectrum.size))
     return np.fft.irfft(turned, values.size) + values.mean()
 
 
-def shifted(values: FloatArray, rng: np.random.Generator) -> FloatArray:
-    """Values moved in time, by a tenth of the recording at least."""
-    return np.roll(values, int(rng.uniform(0.1, 0.9) * values.size))
+def shifted(samples: JointSamples, rng: np.random.Generator) -> FloatArray:
+    """Effort moved in time, by a tenth of the recording at least.
+
+    Where the joint then moves as before, or in its mirror image, the lines still stand at their orders: such a shift
+    is no control.
+    """
+    pace = np.abs(samples.speed)
+    moves = pace > 0.1 * pace.max()
+    for by in (rng.uniform(0.1, 0.9, 100) * pace.size).astype(int).tolist():
+        alike = np.abs(np.roll(pace, by) - pace) < 0.02 * pace
+        if alike[moves].mean() < REPEATED:
+            return np.roll(samples.effort, by)
+    raise ValueError("the motion repeats itself at every shift")
 
 
 def controls(folder: Path, each: int, seed: int) -> Iterable[tuple[str, JointSamples]]:
@@ -214,7 +228,7 @@ def controls(folder: Path, each: int, seed: int) -> Iterable[tuple[str, JointSam
     for name, samples in read_recordings(folder):
         for spoil in (phase_randomised, shifted):
             for _ in range(each):
-                yield f"{name}, {spoil.__name__}", replace(samples, effort=spoil(samples.effort, rng))
+                yield f"{name}, {spoil.__name__}", replace(samples, effort=spoil(samples, rng))
 
 
 def study_controls(folder: Path, seed: int) -> list[str]:
