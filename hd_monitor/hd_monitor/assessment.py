@@ -41,7 +41,9 @@ class Assessment:
     steady_parts : tuple of Record
         The newest stretch at an almost constant speed, in pieces; none while the joint does not turn steadily.
     rms_curve : tuple of SpeedBin
-        RMS [m/s²] by speed, since the start.
+        RMS [m/s²] by speed, since the start, or since the baseline was set.
+    rms_growth : float
+        Of the RMS against the baseline's at the same speeds, as a fraction; NaN without one.
     quality : Quality
         Counters of what came in, since the start.
     speed : float
@@ -70,6 +72,7 @@ class Assessment:
     identification: Identification | None
     steady_parts: tuple[Record, ...]
     rms_curve: tuple[SpeedBin, ...]
+    rms_growth: float
     quality: Quality
     speed: float
     rms: float

@@ -20,6 +20,7 @@ TEMPERATURE = "temperature"
 DIAGNOSTICS = "/diagnostics"
 ZOOM_SPECTRUM = "zoom_spectrum"
 RMS_CURVE = "rms_curve"
+RMS_BASELINE = "rms_curve/baseline"
 
 BLOCK_LABEL = "torsional_acceleration"
 BLOCK_OFFSET = 4

@@ -118,6 +118,10 @@ class Evidence:
             return Identification.none((self._contradiction,), relative=self._settings.sensorless)
         return found.limited(self._contradiction)
 
+    def restart_rms_curve(self) -> None:
+        """Begin the RMS curve anew."""
+        self._rms = RmsAccumulator(self._settings.analysis.rms_bin_width)
+
     @property
     def rms_curve(self) -> tuple[SpeedBin, ...]:
         """RMS [m/s²] of the vibration against the wave generator's speed."""

@@ -23,6 +23,7 @@ from .evidence import Evidence
 from .history.rating import Baseline, rated
 from .identification.identifier import Identifier
 from .identification.sensorless.identifier import SensorlessIdentifier
+from .orders.rms_curve import rms_growth
 from .settings import JointSettings
 from .sources import Quantity
 
@@ -166,6 +167,10 @@ class Monitor:
         """Release a latched verdict."""
         self._judge.reset_latch()
 
+    def restart_rms_curve(self) -> None:
+        """Begin the RMS curve anew, so that it shows what comes after a baseline."""
+        self._evidence.restart_rms_curve()
+
     def reset(self) -> None:
         """Forget all evidence, for example after the reducer was replaced; the input counters are kept."""
         self._judge = Judge(self.settings)
@@ -220,8 +225,8 @@ class Monitor:
         return with_assumed_torque(verdict, self.settings.load.torque)
 
     def _pack(self, stamp: int, verdict: Verdict, state: InputState, assembled: AssembledPeriod | None) -> Assessment:
-        evidence = self._evidence
-        intake = self._intake
+        evidence, intake = self._evidence, self._intake
+        curve, base = evidence.rms_curve, self.baseline.rms_curve if self.baseline else ()
         quality = self._recorder.quality(
             out_of_order=intake.out_of_order, clock_jumps=intake.clock_jumps, dropped=intake.dropped
         )
@@ -234,7 +239,8 @@ class Monitor:
             recalled=self._recalled,
             identification=evidence.identification,
             steady_parts=evidence.steady_parts,
-            rms_curve=evidence.rms_curve,
+            rms_curve=curve,
+            rms_growth=rms_growth(curve, base, self.settings.analysis.rms_bin_width),
             quality=quality,
             speed=evidence.speed(assembled) if assembled is not None else math.nan,
             rms=evidence.level(assembled) if assembled is not None else math.nan,

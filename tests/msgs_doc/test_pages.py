@@ -56,6 +56,7 @@ def everything_known() -> Assessment:
         quality=quality,
         speed=850.0,
         rms=1.0,
+        rms_growth=0.1,
         extra=(("internal errors", "1"),),
     )
 

@@ -60,6 +60,7 @@ def status_of(assessment: Assessment, joint: str) -> Status:
         ("reason", verdict.reason),
         ("speed (rpm)", _number(assessment.speed, 1)),
         ("rms (m/s^2)", _number(assessment.rms, 4)),
+        ("rms growth (%)", _number(100.0 * assessment.rms_growth, 1)),
         ("evidence age (s)", _number(assessment.evidence_age, 0)),
         *_indexes(found),
         *_errors(found),

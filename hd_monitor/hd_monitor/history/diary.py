@@ -7,6 +7,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..assessment import Assessment
 from ..diagnosis.verdict import FaultCode
+from ..orders.rms_curve import SpeedBin, curve_since
 from .entry import Entry, Kind
 
 _NO_VERDICT = {FaultCode.WAITING, FaultCode.INTERNAL_ERROR}
@@ -36,6 +37,7 @@ class Diary:
         self._interval = interval
         self._recording = recording
         self._shown: tuple[object, ...] | None = None
+        self._curve: tuple[SpeedBin, ...] = ()
         self._clear()
 
     def note(self, assessment: Assessment) -> Entry | None:
@@ -58,11 +60,13 @@ class Diary:
 
     def _entry(self, assessment: Assessment, kind: Kind) -> Entry:
         entry = Entry.of(assessment, self._joint, kind=kind, recording=self._recording)
+        curve, self._curve = curve_since(entry.rms_curve, self._curve, entry.rms_bin_width), entry.rms_curve
         entry = entry.with_motion(
             revolutions=self._revolutions,
             seconds=self._seconds,
             torque=self._torque.mean,
             temperature=self._temperature.mean,
+            rms_curve=curve,
         )
         self._clear()
         return entry

@@ -53,6 +53,7 @@ class Entry:
     evidence : tuple of DirectionEvidence
         Lines direction by direction with their covariance, from joint states alone.
     rms_curve : tuple of SpeedBin
+        Of the motion since the entry before, with bins of `rms_bin_width` [rpm].
     revolutions : float
         Revolutions of the wave generator since the entry before, while this was watched.
     seconds : float
@@ -86,6 +87,7 @@ class Entry:
     lines: tuple[LineEstimate, ...] = ()
     evidence: tuple[DirectionEvidence, ...] = ()
     rms_curve: tuple[SpeedBin, ...] = ()
+    rms_bin_width: float = 100.0
     revolutions: float = 0.0
     seconds: float = 0.0
     speed: float = math.nan
@@ -108,6 +110,7 @@ class Entry:
             index_limits=(limits.warn_index, limits.error_index),
             transmission_error_limits=(limits.warn_transmission_error, limits.error_transmission_error),
             rms_curve=assessment.rms_curve,
+            rms_bin_width=assessment.settings.analysis.rms_bin_width,
             source=assessment.settings.input.source,
             recording=recording,
         )
@@ -125,11 +128,24 @@ class Entry:
             evidence=found.evidence,
         )
 
-    def with_motion(self, *, revolutions: float, seconds: float, torque: float, temperature: float) -> Self:
+    def with_motion(
+        self,
+        *,
+        revolutions: float,
+        seconds: float,
+        torque: float,
+        temperature: float,
+        rms_curve: tuple[SpeedBin, ...],
+    ) -> Self:
         """Return the entry with the motion since the one before."""
-        speed = revolutions / seconds * 60.0 if seconds else math.nan
         return replace(
-            self, revolutions=revolutions, seconds=seconds, speed=speed, torque=torque, temperature=temperature
+            self,
+            revolutions=revolutions,
+            seconds=seconds,
+            speed=revolutions / seconds * 60.0 if seconds else math.nan,
+            torque=torque,
+            temperature=temperature,
+            rms_curve=rms_curve,
         )
 
     def content(self) -> dict[str, Any]:

@@ -9,9 +9,11 @@ from scipy.stats import norm
 from ..diagnosis.verdict import Cause, Component, FaultCode, Level, Verdict
 from ..identification.result import Identification
 from ..limitation import LimitationCode
+from ..orders.rms_curve import SpeedBin
 from ..settings.groups import DiagnosisSettings
 from .entry import Entry, Kind
-from .series import Motion, lines_of, series_of
+from .property_curves import property_curves
+from .series import Motion, baseline_entries, lines_of, repeated_motion, series_of
 from .trend import Mean, weighted_mean
 
 CHANCE = 1e-3
@@ -38,21 +40,21 @@ class Baseline(NamedTuple):
     """Amplitude of each spline's."""
     motion: Motion = ()
     """The one motion that showed it, again and again; empty where they differed."""
+    rms_curve: tuple[SpeedBin, ...] = ()
 
 
 def baseline_of(entries: Sequence[Entry]) -> Baseline | None:
     """Return the first pair in the baseline; None as long as it is neither set nor complete."""
     found = {series.name: series for series in series_of(entries)}
     is_set = any(entry.kind is Kind.BASELINE for entry in entries)
-    lines: dict[Component, Mean] = {}
-    motion: Motion = ()
+    lines = {}
     for component, name in _NAMES.items():
         series = found.get(f"{name} line 1")
         if series is None or not series.is_baseline.any() or (series.is_baseline.all() and not is_set):
             return None
-        base, motion = series.is_baseline, series.motion
-        lines[component] = weighted_mean(series.values[base], series.stds[base])
-    return Baseline(lines, motion)
+        lines[component] = weighted_mean(series.values[series.is_baseline], series.stds[series.is_baseline])
+    curve, _ = property_curves(entries)
+    return Baseline(lines, repeated_motion(baseline_entries(entries)), curve)
 
 
 def rated(

@@ -48,8 +48,6 @@ class Series:
         What the others are compared with.
     warn, error : float
         Limits in the same unit; NaN where there are none.
-    motion : sequence of DirectionEvidence
-        The one motion that the baseline repeats; empty where its motions differ.
     """
 
     name: str
@@ -62,7 +60,6 @@ class Series:
     is_baseline: np.typing.NDArray[np.bool_]
     warn: float = math.nan
     error: float = math.nan
-    motion: Motion = ()
 
 
 class _Row(NamedTuple):
@@ -81,19 +78,18 @@ def series_of(entries: Sequence[Entry]) -> list[Series]:
 
     Entries of another signal than the newest are left out: their lines have another unit.
     """
-    turned = np.cumsum([entry.revolutions for entry in entries])
-    kept = [(entry, float(total)) for entry, total in zip(entries, turned, strict=True) if entry.kind is Kind.EVIDENCE]
-    kept = [(entry, total) for entry, total in kept if entry.source == kept[-1][0].source]
-    base = _baseline(entries, [entry for entry, _ in kept])
-    repeated = _repeated_motion([entry for (entry, _), is_base in zip(kept, base, strict=True) if is_base])
+    turned = dict(zip(map(id, entries), np.cumsum([entry.revolutions for entry in entries]).tolist(), strict=True))
+    base = baseline_entries(entries)
+    repeated, chosen = repeated_motion(base), set(map(id, base))
     columns: dict[str, list[_Row]] = {}
     about: dict[str, tuple[str, float, float]] = {}
-    for (entry, total), is_base in zip(kept, base, strict=True):
+    for entry in comparable_entries(entries):
+        total, is_base = turned[id(entry)], id(entry) in chosen
         for name, unit, value, std, warn, error in _readings(entry, repeated):
             if math.isfinite(value) and math.isfinite(std) and std > 0.0:
                 columns.setdefault(name, []).append(_Row(entry.time, total, entry.temperature, value, std, is_base))
                 about[name] = unit, warn, error
-    return [_series(name, *about[name], repeated, rows) for name, rows in columns.items()]
+    return [_series(name, *about[name], rows) for name, rows in columns.items()]
 
 
 def _series(
@@ -101,7 +97,6 @@ def _series(
     unit: str,
     warn: float,
     error: float,
-    motion: Motion,
     rows: Iterable[_Row],
 ) -> Series:
     times, revolutions, temperatures, values, stds, base = (np.array(column) for column in zip(*rows, strict=True))
@@ -116,26 +111,27 @@ def _series(
         is_baseline=base.astype(bool),
         warn=warn,
         error=error,
-        motion=motion,
     )
 
 
-def _baseline(entries: Sequence[Entry], kept: Sequence[Entry]) -> list[bool]:
-    """Which entries are the baseline: those before the last mark, else the first, up to `BASELINE_MOTION`."""
-    marks = [place for place, entry in enumerate(entries) if entry.kind is Kind.BASELINE]
-    chosen: set[int] = set()
-    before = {id(entry) for entry in entries[: marks[-1]]} if marks else set()
-    order = [entry for entry in reversed(kept) if id(entry) in before] if marks else list(kept)
-    seconds = 0.0
-    for entry in order:
-        if chosen and seconds + entry.seconds > BASELINE_MOTION:
-            break
-        chosen.add(id(entry))
-        seconds += entry.seconds
-    return [id(entry) in chosen for entry in kept]
+def comparable_entries(entries: Sequence[Entry]) -> list[Entry]:
+    """Return those with readings of the signal that the newest one is of."""
+    kept = [entry for entry in entries if entry.kind is Kind.EVIDENCE]
+    return [entry for entry in kept if entry.source == kept[-1].source]
 
 
-def _repeated_motion(baseline: Sequence[Entry]) -> Motion:
+def baseline_entries(entries: Sequence[Entry]) -> list[Entry]:
+    """Return those that the others are compared with: before the last mark, else the first; `BASELINE_MOTION` long."""
+    kept = comparable_entries(entries)
+    if marks := [place for place, entry in enumerate(entries) if entry.kind is Kind.BASELINE]:
+        before = set(map(id, entries[: marks[-1]]))
+        kept = [entry for entry in reversed(kept) if id(entry) in before]
+    seconds = np.cumsum([entry.seconds for entry in kept])
+    chosen = kept[: max(1, int(np.searchsorted(seconds, BASELINE_MOTION, side="right")))]
+    return chosen[::-1] if marks else chosen
+
+
+def repeated_motion(baseline: Sequence[Entry]) -> Motion:
     """Return the one motion of which all entries of a baseline are repetitions; none where they are not, or too few."""
     first = baseline[0].evidence if len(baseline) >= FEWEST_REPEATS else ()
     return first if all(_is_repetition(entry.evidence, first) for entry in baseline) else ()

@@ -9,13 +9,16 @@ from datetime import UTC, datetime
 from typing import Any
 
 from .. import __version__
-from ..change import Change
+from ..change import SIGNIFICANT, Change
 from ..diagnosis.verdict import Verdict
 from ..history.entry import Entry, Kind
 from ..history.ledger import Ledger, Reducer
+from ..history.property_curves import property_curves
 from ..history.series import Series, series_of
 from ..history.trend import Slope, Step, change_of, slope_of, step_of
+from ..orders.rms_curve import SpeedBin
 from .errors import BagError
+from .line_changes import CurveChange, curve_change, describe_curve
 from .result import plain
 
 COLUMNS = ("serial", "joint", "time", "revolutions", "reading", "unit", "value", "std", "is_baseline", "temperature")
@@ -73,6 +76,22 @@ class ReducerHistory:
     reducer: Reducer
     entries: Sequence[Entry]
     readings: Sequence[Reading]
+    curves: tuple[tuple[SpeedBin, ...], tuple[SpeedBin, ...]]
+    """RMS by speed in the baseline, and since."""
+
+    @property
+    def curve_change(self) -> CurveChange | None:
+        """What changed in the RMS at the speeds of both; None where these are too few."""
+        before, after = ([point._asdict() for point in curve] for curve in self.curves)
+        width = self.entries[-1].rms_bin_width if self.entries else 1.0
+        return curve_change(before, after, width)
+
+    @property
+    def remarks(self) -> list[str]:
+        """What is worth saying, in sentences."""
+        said = [remark for reading in self.readings for remark in reading.remarks]
+        change = self.curve_change
+        return said + ([describe_curve(change)] if change is not None and change.p_value < SIGNIFICANT else [])
 
     @property
     def verdict(self) -> Verdict | None:
@@ -114,7 +133,7 @@ def _history(reducer: Reducer, entries: Sequence[Entry]) -> ReducerHistory:
         Reading(series=series, change=change_of(series), slope=slope_of(series), step=step_of(series))
         for series in series_of(entries)
     ]
-    return ReducerHistory(reducer=reducer, entries=entries, readings=readings)
+    return ReducerHistory(reducer=reducer, entries=entries, readings=readings, curves=property_curves(entries))
 
 
 def as_dict(histories: Sequence[ReducerHistory], path: str) -> dict[str, Any]:
@@ -127,7 +146,8 @@ def as_dict(histories: Sequence[ReducerHistory], path: str) -> dict[str, Any]:
             "revolutions": sum(entry.revolutions for entry in history.entries),
             "verdict": _verdict(history),
             "readings": [_reading(reading) for reading in history.readings],
-            "remarks": [remark for reading in history.readings for remark in reading.remarks],
+            "rms_curve": _curves(history),
+            "remarks": history.remarks,
         }
         for history in histories
     ]
@@ -148,6 +168,12 @@ def _verdict(history: ReducerHistory) -> dict[str, Any] | None:
         "reason": verdict.reason,
         "time": entry.time,
     }
+
+
+def _curves(history: ReducerHistory) -> dict[str, Any]:
+    before, after = ([point._asdict() for point in curve] for curve in history.curves)
+    change = history.curve_change
+    return {"baseline": before, "newest": after, "change": change and change._asdict()}
 
 
 def _reading(reading: Reading) -> dict[str, Any]:
@@ -214,7 +240,7 @@ def table(histories: Sequence[ReducerHistory]) -> str:
             change = f", changed by {_shown(reading.change.change, series.unit)}" if reading.change else ""
             spread = f" ± {_shown(reading.change.std, series.unit)}" if reading.change else ""
             lines.append(f"  {series.name}: {value} ± {std}{change}{spread}")
-        lines += [f"  {remark}" for reading in history.readings for remark in reading.remarks]
+        lines += [f"  {remark}" for remark in history.remarks]
     return "\n".join(lines)
 
 

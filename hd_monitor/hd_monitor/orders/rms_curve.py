@@ -1,6 +1,7 @@
 """RMS of the vibration against speed: the paper's property curve (Figs. 16 and 18)."""
 
 import math
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -48,9 +49,44 @@ class RmsAccumulator:
         for offset in np.flatnonzero(sums[:, 2]).tolist():
             self._sums[first + offset] = self._sums.get(first + offset, 0.0) + sums[offset]
 
+    def include(self, curve: Sequence[SpeedBin], times: int = 1) -> None:
+        """Add the samples behind a curve of this width, or with `times` = -1 take them away."""
+        for rpm, rms, samples in curve:
+            place = round(rpm / self._width)
+            own = times * samples * np.array([rpm, rms * rms, 1.0])
+            self._sums[place] = self._sums.get(place, 0.0) + own
+
     def curve(self) -> tuple[SpeedBin, ...]:
         """Return the bins that have samples, by rising speed."""
         return tuple(
-            SpeedBin(total / samples, math.sqrt(power / samples), int(samples))
+            SpeedBin(total / samples, math.sqrt(max(power, 0.0) / samples), round(samples))
             for total, power, samples in (self._sums[number].tolist() for number in sorted(self._sums))
+            if samples > 0.0
         )
+
+
+def pooled_curve(curves: Iterable[Sequence[SpeedBin]], width: float) -> tuple[SpeedBin, ...]:
+    """Return the curve of all samples behind some curves with bins of one width [rpm]."""
+    total = RmsAccumulator(width)
+    for curve in curves:
+        total.include(curve)
+    return total.curve()
+
+
+def curve_since(now: Sequence[SpeedBin], before: Sequence[SpeedBin], width: float) -> tuple[SpeedBin, ...]:
+    """Return the curve of the samples that came since an earlier state of it; all of it where it began anew."""
+    known = {round(b.rpm / width): b.samples for b in now}
+    if any(known.get(round(b.rpm / width), 0) < b.samples for b in before):
+        return tuple(now)
+    added = RmsAccumulator(width)
+    added.include(now)
+    added.include(before, -1)
+    return added.curve()
+
+
+def rms_growth(now: Sequence[SpeedBin], baseline: Sequence[SpeedBin], width: float) -> float:
+    """Return by how much the RMS has grown, as a fraction, at the speeds of now that the baseline has; else NaN."""
+    known = {round(b.rpm / width): b.rms for b in baseline}
+    common = [(b.samples, b.rms, known[place]) for b in now if (place := round(b.rpm / width)) in known]
+    present, past = (math.fsum(row[0] * row[side] ** 2 for row in common) for side in (1, 2))
+    return math.sqrt(present / past) - 1.0 if past > 0.0 else math.nan

@@ -46,6 +46,7 @@ class JointChannel:
         self._motion: DrainedSubscription | None = None
         self._zoom = self._advertise(contract.ZOOM_SPECTRUM)
         self._rms = self._advertise(contract.RMS_CURVE)
+        self._baseline = self._advertise(contract.RMS_BASELINE)
         self.joint = joint
         memory = Memory(joint, settings, node.get_logger().error) if settings.history.path else None
         self.watch = JointWatch(joint, settings, now, self._explain, self._explain_crowd, memory, self._date)
@@ -96,8 +97,8 @@ class JointChannel:
     def destroy(self) -> None:
         """Destroy the publishers, and close the ledger."""
         self.watch.close()
-        self._node.destroy_lifecycle_publisher(self._zoom)
-        self._node.destroy_lifecycle_publisher(self._rms)
+        for publisher in (self._zoom, self._rms, self._baseline):
+            self._node.destroy_lifecycle_publisher(publisher)
 
     def feed(self, motion: Sequence[bytes], now: int) -> None:
         """Hand the joint's new messages to its watch; publish the curves where that led to a new assessment."""
@@ -122,3 +123,5 @@ class JointChannel:
             self._zoom.publish(zoom_message(zoom))
         if curve := self.watch.present.rms_curve:
             self._rms.publish(rms_message(curve))
+        if curve := self.watch.baseline_curve:
+            self._baseline.publish(rms_message(curve))

@@ -24,6 +24,7 @@ from ..errors import HdMonitorError, ParameterError
 from ..evidence import new_identifier
 from ..history.entry import Kind
 from ..monitor import Monitor, Recalled
+from ..orders.rms_curve import SpeedBin
 from ..orders.zoom import ZoomSpectrum
 from ..settings import JointSettings
 from ..sources import Quantity
@@ -158,6 +159,11 @@ class JointWatch:
             self._fail(error)
             return None
 
+    @property
+    def baseline_curve(self) -> tuple[SpeedBin, ...]:
+        """RMS by speed in the baseline; empty without one."""
+        return self._monitor.baseline.rms_curve if self._monitor.baseline else ()
+
     def change_limits(self, settings: JointSettings) -> None:
         """Put other ``diagnosis.*`` parameters in force."""
         self.settings = settings
@@ -178,6 +184,7 @@ class JointWatch:
         if self._memory is None:
             raise ParameterError("history.path is empty, so that no baseline can be kept; set it to a file")
         self.mark(Kind.BASELINE)
+        self._monitor.restart_rms_curve()
 
     def mark(self, kind: Kind) -> None:
         """Note an exchange or a baseline in the ledger, if there is one."""

@@ -68,8 +68,7 @@ class Memory:
 
     def close(self) -> None:
         """Write what followed the last entry, and close the file."""
-        if self._newest is not None and (entry := self._diary.close(self._newest)):
-            self._append(entry)
+        self._write_rest()
         if self._ledger is not None:
             self._ledger.close()
             self._ledger = None
@@ -78,9 +77,15 @@ class Memory:
         """Note an exchange or a baseline at a time [s]."""
         if kind is Kind.EXCHANGE:
             self.last, self.evidence, self.baseline = None, (), None
+        else:
+            self._write_rest()
         if (ledger := self._ledger) is not None:
             self._try(lambda: ledger.mark(self._serial, self._joint, kind, at))
             self._try(self._find_baseline)
+
+    def _write_rest(self) -> None:
+        if self._newest is not None and (entry := self._diary.close(self._newest)):
+            self._append(entry)
 
     def _find_baseline(self) -> None:
         if self._ledger is not None:

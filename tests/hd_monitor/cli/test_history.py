@@ -15,6 +15,7 @@ from hd_monitor.diagnosis.verdict import Component, FaultCode, Level, Verdict
 from hd_monitor.history.entry import Kind
 from hd_monitor.history.ledger import Ledger
 from hd_monitor.offline.history import COLUMNS
+from hd_monitor.orders.rms_curve import SpeedBin
 
 DAY = 86_400.0
 START = 1_700_000_000.0
@@ -90,6 +91,21 @@ def test_the_temperature_stands_beside_the_readings(tmp_path: Path, capsys: pyte
     (reading, *_) = result_of(path)["S1"]["readings"]
     assert [value["temperature"] for value in reading["values"]] == [None, 31.25]
     assert "(2023-11-15 22:13 UTC, 31.2 °C)" in capsys.readouterr().out
+
+
+def test_the_property_curve_is_compared_with_the_baselines(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path, speeds = tmp_path / "curves.sqlite", (600.0, 900.0, 1200.0)
+    with Ledger(path) as file:
+        for day, size in enumerate((1.0, 1.02, 0.5)):
+            curve = tuple(SpeedBin(rpm, size * rpm * (1.0 + 0.01 * k), 1000) for k, rpm in enumerate(speeds))
+            file.append(entry(time=START + day * DAY, seconds=1800.0, rms_curve=curve))
+    curves = result_of(path, "--report", str(tmp_path / "report"))["S1"]["rms_curve"]
+    assert [point["rpm"] for point in curves["baseline"]] == list(speeds)
+    assert curves["newest"][0]["rms"] == pytest.approx(300.0)
+    assert curves["change"]["ratio"] == pytest.approx(0.495, abs=0.003)
+    assert "Over 3 common speeds the vibration is 50 ±" in capsys.readouterr().out
+    page = (tmp_path / "report" / "index.html").read_text(encoding="utf-8")
+    assert "Before: the baseline; after: the newest motion." in page
 
 
 def test_csv_has_a_row_for_each_value(ledger: Path, tmp_path: Path) -> None:

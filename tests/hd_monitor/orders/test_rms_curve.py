@@ -1,9 +1,11 @@
+import itertools
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hd_monitor.orders.rms_curve import RmsAccumulator
+from hd_monitor.orders.rms_curve import RmsAccumulator, SpeedBin, curve_since, pooled_curve, rms_growth
 
 
 def test_a_sine_has_its_amplitude_over_the_root_of_two():
@@ -59,3 +61,34 @@ def test_does_not_depend_on_how_the_samples_are_chunked(samples, cuts):
     for one, other in zip(found, expected, strict=True):
         assert one == pytest.approx(other, rel=1e-9, abs=1e-9)
     assert sum(b.samples for b in whole.curve()) == int(np.isfinite(value).sum())
+
+
+def curve(*points):
+    return tuple(SpeedBin(*point) for point in points)
+
+
+def test_the_samples_since_an_earlier_state_and_those_before_make_the_whole():
+    whole, rng = RmsAccumulator(100.0), np.random.default_rng(1)
+    states: list[tuple[SpeedBin, ...]] = [()]
+    for _ in range(3):
+        whole.add(rng.uniform(300.0, 900.0, 50), rng.standard_normal(50))
+        states.append(whole.curve())
+    parts = [curve_since(now, before, 100.0) for before, now in itertools.pairwise(states)]
+    assert [sum(b.samples for b in part) for part in parts] == [50, 50, 50]
+    for one, other in zip(pooled_curve(parts, 100.0), whole.curve(), strict=True):
+        assert one == pytest.approx(other, rel=1e-9)
+    assert curve_since(states[1], states[1], 100.0) == ()
+
+
+def test_a_curve_that_began_anew_counts_as_a_whole():
+    long, fresh = curve((500.0, 1.0, 100)), curve((510.0, 2.0, 10), (800.0, 3.0, 5))
+    assert curve_since(fresh, long, 100.0) == fresh
+    assert curve_since(fresh, (*long, *fresh[1:]), 100.0) == fresh
+
+
+def test_the_rms_is_compared_at_the_speeds_of_both():
+    base = curve((500.0, 1.0, 100), (800.0, 4.0, 100))
+    assert rms_growth(curve((490.0, 1.5, 10), (1200.0, 9.0, 10)), base, 100.0) == pytest.approx(0.5)
+    assert rms_growth(base, base, 100.0) == 0.0
+    assert np.isnan(rms_growth(curve((1200.0, 9.0, 10)), base, 100.0))
+    assert np.isnan(rms_growth(base, (), 100.0))

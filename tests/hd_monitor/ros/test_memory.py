@@ -163,6 +163,14 @@ def test_a_baseline_rates_what_joint_states_alone_show(start_watch: Callable[...
     assert "The circular spline's line has grown" in status.message
 
 
+def test_what_was_seen_before_a_baseline_is_set_belongs_to_it(start_watch: Callable[..., JointWatch]) -> None:
+    watch = start_watch(DAY)  # whose interval is far longer
+    swing(watch, DAY, 60.0)
+    watch.set_baseline()
+    swing(watch, DAY + 60.0, 10.0)
+    assert watch.statuses()[0].value("fault_code") == "HD_OK"
+
+
 def test_a_baseline_needs_a_ledger() -> None:
     watch = JointWatch("elbow", JointSettings.from_mapping(), SECOND, explain, alone)
     with pytest.raises(ParameterError, match=r"history\.path is empty"):

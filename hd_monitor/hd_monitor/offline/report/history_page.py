@@ -12,6 +12,7 @@ from ...history.series import SPLINES, Series
 from ...history.trend import BANDS
 from ..history import Reading, ReducerHistory
 from ..plots.readings import readings_plot
+from ..plots.rms_curve import rms_plot
 from ..plots.style import png
 from .page import write_page
 
@@ -48,8 +49,8 @@ def _section(history: ReducerHistory) -> dict[str, Any]:
         "entries": len(history.entries),
         "bars": [_bar(reading.series) for reading in shown if math.isfinite(reading.series.error)],
         "sparklines": [_sparkline(reading.series) for reading in shown],
-        "remarks": [remark for reading in history.readings for remark in reading.remarks],
-        "pictures": _pictures(history.readings),
+        "remarks": history.remarks,
+        "pictures": _pictures(history.readings) | _property_curves(history),
     }
 
 
@@ -93,6 +94,13 @@ def _sparkline(series: Series) -> dict[str, Any]:
         "width": _WIDTH,
         "height": _HEIGHT,
     }
+
+
+def _property_curves(history: ReducerHistory) -> dict[str, bytes]:
+    """Plot the RMS by speed in the baseline and since, if there is one of both."""
+    if not all(history.curves):
+        return {}
+    return {"rms_curve": png(rms_plot(*history.curves, critical=(), title="Vibration over speed"))}
 
 
 def _pictures(readings: Sequence[Reading]) -> dict[str, bytes]:
