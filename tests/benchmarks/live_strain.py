@@ -37,8 +37,9 @@ SETTLED = 20.0
 ASKED = 0.5
 """Seconds between two requests."""
 RIG = ("programme:=strokes", "defect:=flexspline")
-TEN_HOURS = 360.0
-"""Seconds in which a rig at 100 times real time sends ten hours."""
+FAST = 100.0
+TEN_HOURS = 36_000.0 / FAST
+"""Seconds in which a rig that is so much faster than real time sends ten hours."""
 
 
 class Live:
@@ -170,15 +171,33 @@ def killed(live: Live, seconds: float) -> None:
 
 def clock_back(live: Live, seconds: float) -> None:
     """Publish /clock and set it back by a minute every ten seconds."""
-    from builtin_interfaces.msg import Time
-
-    clock_type: Any = import_module("rosgraph_msgs.msg").Clock
-    publisher = live.peer.create_publisher(clock_type, "/clock", 10)
+    clock = _Clock(live)
     for turn in _repeatedly(seconds):
         for _ in range(100):
-            now = int((time.time() - 60.0 * (turn % 2)) * 1e9)
-            publisher.publish(clock_type(clock=Time(sec=now // 10**9, nanosec=now % 10**9)))
+            clock.publish(time.time() - 60.0 * (turn % 2))
             live.watch(0.1)
+
+
+def hours(live: Live, seconds: float) -> None:
+    """Publish /clock at the rig's speed."""
+    clock, begun = _Clock(live), time.monotonic()
+    for _ in _repeatedly(seconds):
+        clock.publish(time.time() + (FAST - 1.0) * (time.monotonic() - begun))
+        live.watch(0.05)
+
+
+class _Clock:
+    """Publishes /clock."""
+
+    def __init__(self, live: Live) -> None:
+        self._type: Any = import_module("rosgraph_msgs.msg").Clock
+        self._publisher = live.peer.create_publisher(self._type, "/clock", 10)
+
+    def publish(self, seconds: float) -> None:
+        from builtin_interfaces.msg import Time
+
+        whole, part = divmod(int(seconds * 1e9), 10**9)
+        self._publisher.publish(self._type(clock=Time(sec=whole, nanosec=part)))
 
 
 def parameters(live: Live, seconds: float) -> None:
@@ -199,8 +218,8 @@ def large(live: Live, seconds: float) -> None:
     """Let another process publish messages of 80 MB where blocks are expected."""
     process = multiprocessing.get_context("spawn").Process(target=_publish_large, args=(seconds,))
     process.start()
-    live.watch(seconds)
-    process.join()
+    while process.is_alive():
+        live.watch(0.1)
     live.watch(10.0)
 
 
@@ -232,11 +251,11 @@ SCENARIOS: dict[str, tuple[str, Callable[[Live, float], None], float, Sequence[s
     "fast": ("blocks of 10 kHz", undisturbed, 60.0, (), ("sensor.rate:=10000.0", "block_size:=500")),
     "large": ("messages of 80 MB on the topic of the blocks", large, 40.0, (), ()),
     "hours": (
-        "ten hours at 100 times real time",
-        undisturbed,
+        "ten hours at 100 times real time, with /clock",
+        hours,
         TEN_HOURS,
-        ("input.timeout:=200.0",),
-        ("time_scale:=100.0", "block_size:=1000", "joint_states.rate:=20.0"),
+        ("input.timeout:=200.0", "use_sim_time:=true"),
+        (f"time_scale:={FAST}", "block_size:=1000", "joint_states.rate:=20.0"),
     ),
 }
 """Name: what happens, how, for how long [s], parameters of the node and of the rig."""

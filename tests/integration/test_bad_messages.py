@@ -1,9 +1,11 @@
 """Messages that say nothing are reported and survived: good ones behind them count as ever."""
 
+from array import array
 from typing import Any
 
 import numpy as np
 import pytest
+from tests.benchmarks.node_resources import use_of
 
 from .conftest import ERROR, Bench, Feeder, Shown
 
@@ -108,3 +110,32 @@ def test_half_a_message_never_ends_the_node(listening: Bench, feeder: Feeder, pe
     feeder.blocks.publish(message)
     listening.until_input(lambda s: s.number("rejected messages") >= 7, "seven rejected messages")
     assert_recovers(listening, feeder)
+
+
+def test_messages_that_are_far_too_large_leave_no_memory_behind(bench: Bench, feeder: Feeder, peer: Any) -> None:
+    from std_msgs.msg import Float64MultiArray
+
+    node = bench.monitor("input.timeout:=0.5")
+    bench.until(feeder.matched, "the monitor's subscriptions")
+
+    def warm() -> bool:
+        feeder.send(20)
+        return any(s.number("samples") >= 20_000 for s in bench.statuses)
+
+    bench.until(warm, "the memory that identification takes")
+    size = 40_000_000  # above what the C library ever keeps for later
+    careless = peer.publisher(Float64MultiArray, "torsional_acceleration/block", depth=1)
+    message = Float64MultiArray(data=array("d", bytes(size)))
+    taken = []
+    for number in range(1, 6):
+        careless.publish(message)
+
+        def rejected(number: int = number) -> bool:
+            feeder.send(1)  # ordinary blocks take up the places in the queue that large messages have left
+            return any(s.number("rejected messages") == number for s in bench.inputs)
+
+        bench.until(rejected, f"{number} rejected messages")
+        taken.append(use_of(node.popen.pid).memory)
+    assert "a message of 40.0 MB; more than 2 MB are not read" in bench.inputs[-1].values["last complaint"]
+    assert max(taken) - taken[0] < 20.0, taken
+    assert_recovers(bench, feeder)

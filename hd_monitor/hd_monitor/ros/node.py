@@ -17,6 +17,7 @@ from .joint_channel import JointChannel, queue_depth_of
 from .managed_node import ManagedNode, logged, run
 from .messages import diagnostic_status
 from .parameters import JointParameters
+from .queue import return_memory
 from .status_log import StatusLog
 from .subscriptions import DrainedSubscription
 
@@ -191,4 +192,5 @@ class HdMonitorNode(ManagedNode):
 
 def main(args: list[str] | None = None) -> int:
     """Run the node until it is interrupted; return 0, or 2 for parameters with which nothing can be watched."""
+    return_memory()
     return run(NAME, HdMonitorNode, args)
