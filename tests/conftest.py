@@ -30,7 +30,6 @@ _reserved: list[socket.socket] = []
 
 # The same examples in every run, and no verdict on how fast the machine is: what fails, fails for everyone.
 hypothesis.settings.register_profile("project", deadline=None, derandomize=True)
-hypothesis.settings.register_profile("fuzz", deadline=None, max_examples=22_000)  # tests/fuzzing
 hypothesis.settings.load_profile("project")
 
 

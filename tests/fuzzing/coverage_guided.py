@@ -1,15 +1,21 @@
-"""A fuzzer that is guided by the branches which inputs reach: for a night, or until a new branch is rare.
+"""A million hostile inputs, guided by the branches that they reach, with a row for each reader.
 
     pip install atheris
-    python tests/fuzzing/coverage_guided.py mcap -max_total_time=3600 corpus/
+    python tests/fuzzing/coverage_guided.py                          all readers, a million inputs in all
+    python tests/fuzzing/coverage_guided.py mcap --inputs 50000      one of them
 
-The first argument is what is read; the others are libFuzzer's. An input that survives extends the corpus; one that
-does not is written beside it, and ends the run with its traceback.
+Options that are not listed are libFuzzer's, as -max_total_time=3600. An input that some reader does not survive is
+written into the working directory, its traceback is printed, and the exit status is 1. The first row is a fault that is
+planted, which must be found.
 """
 
+import argparse
+import re
+import subprocess
 import sys
 import tempfile
-from collections.abc import Callable
+import time
+from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 
@@ -17,65 +23,69 @@ import atheris
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
-with atheris.instrument_imports(include=["hd_monitor"]):
-    from hd_monitor.adapters import Inputs
-    from hd_monitor.errors import HdMonitorError
-    from hd_monitor.monitor import Monitor
-    from hd_monitor.offline.bag import Bag
-    from hd_monitor.offline.parameters import load_parameters
-    from hd_monitor.settings import JointSettings, set_aside_foreign, split_joints
-    from hd_monitor.sources import INPUT_SOURCES
+with atheris.instrument_imports(include=["hd_monitor", "tests.fuzzing"]):
+    from tests.fuzzing.readers import PLANTED, READERS
+    from tests.fuzzing.survival import MEMORY, bounded
 
-from tests.fuzzing.survival import bounded
+from hd_monitor.errors import HdMonitorError
 
-FOLDER = Path(tempfile.mkdtemp(prefix="hd-monitor-fuzzing-"))
+_ONE = "--one"
+_COUNTS = {"inputs": "number_of_executed_units", "memory": "peak_rss_mb"}
 
 
-def _message(data: bytes) -> None:
-    for word in INPUT_SOURCES:
-        settings = JointSettings.from_mapping({"input.source": word, "input.sensor_radius": 0.5})
-        for quantity in settings.sources:
-            Inputs("joint", settings, Monitor(settings)).add(quantity, [data])
+def fuzz(name: str, options: Sequence[str]) -> None:
+    """Fuzz a reader with libFuzzer's options; ends the process."""
+    with tempfile.TemporaryDirectory(prefix="hd-monitor-fuzzing-") as folder:
+        corpus = Path(folder) / "corpus"
+        corpus.mkdir()
+        prepared = READERS[name][1](Path(folder))
+        for number, seed in enumerate(prepared.seeds):
+            (corpus / str(number)).write_bytes(seed)
+
+        def survive(data: bytes) -> None:
+            with bounded(), suppress(HdMonitorError):
+                prepared.read(data)
+
+        atheris.Setup([name, *options, str(corpus)], survive)
+        atheris.Fuzz()
 
 
-def _recording(suffix: str) -> Callable[[bytes], None]:
-    def read(data: bytes) -> None:
-        path = FOLDER / f"recording{suffix}"
-        path.write_bytes(data)
-        with Bag(path) as bag:
-            for _ in bag.messages([topic.name for topic in bag.topics]):
-                pass
-
-    return read
-
-
-def _parameters(data: bytes) -> None:
-    path = FOLDER / "parameters.yaml"
-    path.write_bytes(data)
-    split_joints(set_aside_foreign(load_parameters(path))[0])
-
-
-READERS: dict[str, Callable[[bytes], None]] = {
-    "message": _message,
-    "mcap": _recording(".mcap"),
-    "sqlite": _recording(".db3"),
-    "parameters": _parameters,
-}
+def row(name: str, inputs: int, options: Sequence[str]) -> tuple[str, bool]:
+    """Fuzz a reader in a process of its own; return its row of the table, and whether it did as it should."""
+    begun = time.monotonic()
+    words = [f"-runs={inputs}", "-len_control=0", "-print_final_stats=1", "-rss_limit_mb=2048", *options]
+    done = subprocess.run([sys.executable, __file__, _ONE, name, *words], capture_output=True, check=False)
+    said = done.stderr.decode(errors="replace") + done.stdout.decode(errors="replace")
+    found = {key: re.search(rf"stat::{word}: +(\d+)", said) for key, word in _COUNTS.items()}
+    counts = {key: int(match[1]) if match else 0 for key, match in found.items()}
+    right = bool(done.returncode) == (name == PLANTED)
+    if not right:
+        print(said[-8000:], file=sys.stderr)
+    ends = "found" if done.returncode else "survived"
+    spent = time.monotonic() - begun
+    return f"| {name} | {counts['inputs']} | {spent:.0f} s | {counts['memory']} MB | {ends} |", right
 
 
-def main() -> None:
-    """Fuzz the reader that the first argument names."""
-    if len(sys.argv) < 2 or sys.argv[1] not in READERS:
-        raise SystemExit(f"what to read, one of {', '.join(READERS)}, is missing; {__doc__}")
-    read = READERS[sys.argv.pop(1)]
-
-    def survive(data: bytes) -> None:
-        with bounded(), suppress(HdMonitorError):
-            read(data)
-
-    atheris.Setup(sys.argv, survive)
-    atheris.Fuzz()
+def main() -> int:
+    """Fuzz the readers named, or all of them; return the exit status."""
+    if sys.argv[1:2] == [_ONE]:
+        fuzz(sys.argv[2], sys.argv[3:])
+        return 0
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("readers", nargs="*", choices=[*READERS, []], help="all of them if none is given")
+    parser.add_argument("--inputs", type=int, default=1_000_000, help="in all, shared among the readers")
+    arguments, options = parser.parse_known_args()
+    chosen = arguments.readers or list(READERS)
+    whole = sum(READERS[name][0] for name in chosen)
+    print(f"| reader | inputs | time | memory at its peak, {MEMORY >> 20} MiB an input | faults |", flush=True)
+    print("|---|---|---|---|---|", flush=True)
+    failed = False
+    for name in chosen:
+        text, right = row(name, round(arguments.inputs * READERS[name][0] / whole), options)
+        print(text, flush=True)
+        failed |= not right
+    return int(failed)
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -6,14 +6,13 @@ from typing import Any
 import numpy as np
 import pytest
 from hypothesis import strategies as st
+from tests.fuzzing.readers import Counter, put_into_words
 from tests.fuzzing.survival import damaged, survive
 from tests.hd_monitor.monitored import EPOCH, Recording
 from tests.hd_monitor.offline import recordings
 
 from hd_monitor.adapters import Inputs
-from hd_monitor.arrays import FloatArray, IntArray
 from hd_monitor.contract import Block
-from hd_monitor.diagnosis.status import status_of
 from hd_monitor.monitor import Monitor
 from hd_monitor.settings import JointSettings
 from hd_monitor.sources import INPUT_SOURCES, LOAD_SOURCES, Quantity
@@ -38,24 +37,6 @@ SOURCES: dict[str, dict[str, Any]] = {
     **{f"load.source: {word}": {"load.source": word} for word, source in LOAD_SOURCES.items() if source},
     "input.temperature_topic": {"input.temperature_topic": "temperature"},
 }
-
-
-class Counter:
-    """Takes what the decoders yield and counts the messages it stands for."""
-
-    def __init__(self) -> None:
-        self.taken = 0
-
-    def add(self, quantity: Quantity, stamps: IntArray, *columns: FloatArray) -> None:
-        assert all(column.shape == stamps.shape for column in columns)
-        self.taken += stamps.size
-
-    def add_block(self, block: Block) -> None:
-        assert block.samples.ndim == 1
-        self.taken += 1
-
-    def reject(self, reason: str) -> None:
-        assert "\n" not in reason
 
 
 @pytest.mark.parametrize("setting", SOURCES)
@@ -104,9 +85,9 @@ def test_blocks_and_joint_states_into_a_monitor() -> None:
                 case (stamp, *values):
                     monitor.add(Quantity.MOTION, [stamp], *([value] for value in values))
             for assessment in monitor.advance():
-                status_of(assessment, "joint")
-        last = monitor.finish()
-        assert last is None or status_of(last, "joint").message
+                put_into_words(assessment)
+        if (last := monitor.finish()) is not None:
+            put_into_words(last)
 
     joint = st.tuples(stamps, treacherous, treacherous, treacherous)
     survive(run, st.lists(st.tuples(st.integers(0, len(blocks) - 1), odd_blocks | joint), min_size=1, max_size=4))
