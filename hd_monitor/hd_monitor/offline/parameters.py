@@ -2,6 +2,7 @@
 
 import itertools
 import re
+import reprlib
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -105,7 +106,7 @@ def load_parameters(path: Path, node: str | None = None) -> dict[str, Any]:
     if content is None:
         return {}
     if not isinstance(content, Mapping):
-        raise ParameterError(f"{path} holds a {type(content).__name__} where parameters belong; see config/")
+        raise ParameterError(f"{path} holds {reprlib.repr(content)} where parameters belong; see config/ for examples")
     sections = list(_sections(content, ""))
     if not sections:
         return flatten({str(name): value for name, value in content.items()})

@@ -70,7 +70,7 @@ def split_joints(given: Mapping[str, Any]) -> dict[str, JointSettings]:
         settings[joint] = JointSettings.from_mapping(common | own)
     if rest:
         raise ParameterError(
-            f"{', '.join(sorted(rest))}: neither parameters nor below one of the joints {', '.join(joints)}; "
-            "check the spelling"
+            f"there is no parameter {' or '.join(sorted(rest))}, neither of the node nor of a joint "
+            f"({', '.join(joints)}); check the spelling"
         )
     return settings
