@@ -1,21 +1,21 @@
 """How well does one health-check move repeat, and is a line that grows by 30 % noticed within one?
 
-    python tests/studies/check_move.py [--sound 1000] [--moves 100] [--seed 2024]
+    python tests/studies/check_move.py [--sound 1000] [--moves 100] [--with-sensor 10] [--seed 2024]
 
-From joint states alone. The rig has the effects of a real drive (`drive: catalogue`), and each move other noise.
-Repeatability is the standard deviation of a reading over moves. The first five are the baseline. Each move after them
-is looked at by itself: a change is noticed where it is significant at 1 in 1000, and what a monitor then shows is
-counted.
+From joint states alone, but for a look at the repeatability with a sensor. The rig has the effects of a real drive
+(`drive: catalogue`), and each move other noise. Repeatability is the standard deviation of a reading over moves. The
+first five are the baseline. Each move after them is looked at by itself: a change is noticed where it is significant
+at 1 in 1000, and what a monitor then shows is counted.
 """
 
 import argparse
 import math
 import sys
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -27,6 +27,7 @@ from hd_monitor.history.series import SPLINES, series_of
 from hd_monitor.history.trend import change_of
 from hd_monitor.offline.move import MoveLimits, plan_move
 from hd_monitor.settings import JointSettings
+from hd_sim_node.drive.catalogue import preset
 from hd_sim_node.motion.programme import SpeedProgramme
 from hd_sim_node.settings import RigSettings
 from hd_sim_node.simulation import Simulation
@@ -47,18 +48,21 @@ LIMITS = MoveLimits(lower=-1.5, upper=1.5, speed=2.0, acceleration=5.0)
 BASE = 5
 """Moves of the baseline."""
 CHANCE = 1e-3
+DYNAMICS = ("dynamics.natural_frequency", "dynamics.damping_ratio", "dynamics.inertia")
 JOINT_STATES = {"input.source": "joint_effort", "input.expected_rate": 250.0}
 
 
-class OnTheMove(RigSettings):
-    """A rig that drives the move of a monitor of joint states."""
+def on_the_move(watched: Mapping[str, object]) -> type[RigSettings]:
+    """Settings of a rig that drives the move of a monitor with these parameters."""
 
-    @property
-    def programme(self) -> SpeedProgramme:
-        """Corners of the move, in rpm of the wave generator."""
-        move = plan_move(JointSettings.from_mapping(JOINT_STATES), LIMITS, 60.0)
-        rpm = move.velocities * self.reducer.reduction * 60.0 / math.tau
-        return SpeedProgramme(times=move.times, speeds=rpm, cycles=1)
+    class OnTheMove(RigSettings):
+        @property
+        def programme(self) -> SpeedProgramme:
+            move = plan_move(JointSettings.from_mapping(watched), LIMITS, 60.0)
+            rpm = move.velocities * self.reducer.reduction * 60.0 / math.tau
+            return SpeedProgramme(times=move.times, speeds=rpm, cycles=1)
+
+    return OnTheMove
 
 
 class Driven(NamedTuple):
@@ -69,12 +73,26 @@ class Driven(NamedTuple):
 
 
 def drive(seed: int, number: int, **rig: object) -> Driven:
-    """Drive one move and sum it up."""
+    """Drive one move without a sensor and sum it up."""
     effort = {"joint_states.effort": "reaction", "joint_states.effort_noise": 0.3, "joint_states.rate": 250.0}
-    given = {"drive": "catalogue", "defect": "custom", "duration": 60.0, "seed": seed} | effort | rig
-    *_, last = watch(Simulation(OnTheMove.from_mapping(given)), JOINT_STATES)
+    return driven(seed, number, JOINT_STATES, {"drive": "catalogue"} | effort | rig)
+
+
+def driven(seed: int, number: int, watched: dict[str, Any], rig: Mapping[str, object]) -> Driven:
+    """Drive one move before a monitor with these parameters and sum it up."""
+    given = {"defect": "custom", "duration": 60.0, "seed": seed, **rig}
+    *_, last = watch(Simulation(on_the_move(watched).from_mapping(given)), watched)
     entry = Entry.of(last, "joint", kind=Kind.EVIDENCE)
     return Driven(replace(entry, time=float(number), seconds=3600.0 / BASE, revolutions=1000.0), last)
+
+
+def repeatability_with_sensor(seed: int, moves: int) -> Iterator[str]:
+    """Scatter of both readings where an accelerometer is there, on the paper's drive and on a real one's."""
+    for name in ("paper", "catalogue"):
+        watched = {key: value for key, value in preset(name).items() if key in DYNAMICS}
+        rig = {"drive": name, "joint_states.effort_noise": 0.3} | LINES
+        entries = [driven(seed + number, number, watched, rig).entry for number in range(moves)]
+        yield from (f"{name} drive, {line}" for line in repeatability(entries) if "index" in line or "error" in line)
 
 
 def repeatability(entries: Sequence[Entry]) -> Iterator[str]:
@@ -114,7 +132,9 @@ def main() -> None:
     parser.add_argument("--sound", type=int, default=1000, help="moves of the sound drive")
     parser.add_argument("--moves", type=int, default=100, help="moves with each spline's line grown")
     parser.add_argument("--seed", type=int, default=2024)
+    parser.add_argument("--with-sensor", type=int, default=10, help="moves with a sensor on either drive")
     options = parser.parse_args()
+    print(*repeatability_with_sensor(options.seed, options.with_sensor), sep="\n", flush=True)
     base = [drive(options.seed + n, n, **LINES).entry for n in range(BASE)]
     cases = {"": options.sound} | dict.fromkeys(SPLINES, options.moves)
     for place, (spline, count) in enumerate(cases.items()):

@@ -15,13 +15,11 @@ from typing import NamedTuple, Self
 from ..errors import OutputError
 from .entry import Entry, Kind
 
-VERSION = 1
-"""Of the tables, in ``PRAGMA user_version``."""
-
 PATIENCE = 2.0
 """s to wait for another process that is writing."""
 
-_SCHEMA = """
+_SCHEMA = (
+    """
 CREATE TABLE reducers (
     id INTEGER PRIMARY KEY,
     serial TEXT NOT NULL,
@@ -39,7 +37,13 @@ CREATE TABLE entries (
 );
 CREATE INDEX by_time ON entries (reducer, time);
 CREATE UNIQUE INDEX one_of_a_recording ON entries (reducer, recording, time, kind) WHERE recording != '';
-"""
+""",
+    "CREATE INDEX exchanges ON entries (reducer, time) WHERE kind = 'exchange';",
+)
+"""What makes the tables of each version out of those of the one before."""
+
+VERSION = len(_SCHEMA)
+"""Of the tables, in ``PRAGMA user_version``."""
 
 
 class LedgerError(OutputError):
@@ -178,9 +182,9 @@ class Ledger:
             if version == VERSION:
                 return
             (tables,) = self._file.execute("SELECT COUNT(*) FROM sqlite_master").fetchone()
-            if tables:
+            if tables and not version:
                 raise LedgerError(f"{self.path} is a database of something else; give another file")
-            for statement in filter(str.strip, _SCHEMA.split(";")):
+            for statement in filter(str.strip, ";".join(_SCHEMA[version:]).split(";")):
                 self._file.execute(statement)
             self._file.execute(f"PRAGMA user_version = {VERSION}")
 

@@ -129,6 +129,18 @@ def test_a_newer_schema_is_refused(path):
         Ledger(path)
 
 
+def test_an_older_schema_is_brought_up_to_date(path):
+    with Ledger(path) as ledger:
+        ledger.append(entry())
+        ledger._file.execute("DROP INDEX exchanges")
+        ledger._file.execute("PRAGMA user_version = 1")
+    with Ledger(path) as ledger:
+        assert ledger._file.execute("PRAGMA user_version").fetchone() == (2,)
+        plan = ledger._file.execute("SELECT name FROM sqlite_master WHERE type = 'index'").fetchall()
+        assert ("exchanges",) in plan
+        assert repr(ledger.latest("S1")) == repr(entry())
+
+
 def test_other_files_are_refused_and_left_as_they_are(path, tmp_path):
     path.write_text("no database, but a text that is longer than its header" * 9, encoding="utf-8")
     before = path.read_bytes()
