@@ -1,6 +1,8 @@
 """Recordings: rosbag2 folders and single files, MCAP or SQLite, compressed or not, whole or damaged."""
 
+import os
 import re
+import shutil
 import tempfile
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
@@ -14,7 +16,7 @@ import yaml
 from .batches import Batch, RawMessage, RawTopic, Window, in_batches
 from .compression import CHUNK_LIMIT, decompress_file
 from .errors import BagError, one_line
-from .salvage import McapWalk, SqliteWalk, Walk, restore_length
+from .salvage import McapWalk, SqliteWalk, Walk, length_before_cut
 from .sqlite import WholeSqlite, has_unsaved_rows, holds_views
 from .whole_mcap import WholeMcap
 
@@ -207,12 +209,24 @@ class Bag:
 
     def _walk(self, file: Path, plain: Path) -> Walk:
         if plain.suffix != ".mcap":
-            whole = self._folder() / plain.name
-            if restore_length(plain, whole):
+            if (length := length_before_cut(plain)) is not None:
                 self._note(f"{file.name} is cut off: the recording was not closed")
-                plain = whole
+                plain = self._lengthened(file, plain, length)
             return SqliteWalk(plain, file, self._limit, self._note)
         return McapWalk(plain, file, self._limit, self._note)
+
+    def _lengthened(self, file: Path, plain: Path, length: int) -> Path:
+        """Copy a SQLite file with zeros in place of what is missing: SQLite reads none that is too short."""
+        try:
+            whole = self._folder() / plain.name
+            shutil.copyfile(plain, whole)
+            os.truncate(whole, length)
+        except OSError as error:
+            raise BagError(
+                f"{file} is cut off, and a copy of the {length / 1e6:.4g} MB that its header announces cannot be made "
+                f"in {tempfile.gettempdir()} ({error.strerror}); make room there, or set TMPDIR to another folder"
+            ) from None
+        return whole
 
     def _plain(self, file: Path) -> Path:
         """Return `file`, or a decompressed copy of it that lives as long as the bag is open."""

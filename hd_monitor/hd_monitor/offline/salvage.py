@@ -4,8 +4,6 @@ A file that does not end as it should has no summary, and a recorder that lost i
 here walk through the file from its start, hand over every message that is still whole, and note what is not.
 """
 
-import os
-import shutil
 import struct
 from abc import ABC, abstractmethod
 from collections import Counter
@@ -149,24 +147,16 @@ class McapWalk(Walk):
             yield from zip(some.channels.tolist(), some.times.tolist(), some.data(), strict=True)
 
 
-def restore_length(source: Path, target: Path) -> bool:
-    """Copy a SQLite file that was cut off to `target` in its full length; return False if it is not cut off.
-
-    SQLite reads nothing at all from a file that is shorter than its header says; with zeros in place of what is missing
-    it reads up to there.
-    """
-    with source.open("rb") as file:
+def length_before_cut(path: Path) -> int | None:
+    """Return the length [bytes] that the header of a SQLite file announces; None if the file is not shorter."""
+    with path.open("rb") as file:
         header = file.read(100)
     if len(header) < 100 or not header.startswith(sqlite.MAGIC):
-        return False
+        return None
     (page,) = struct.unpack_from(">H", header, 16)
     (pages,) = struct.unpack_from(">I", header, 28)
-    length = pages * (page if page != 1 else 65536)
-    if source.stat().st_size >= length:
-        return False
-    shutil.copyfile(source, target)
-    os.truncate(target, length)
-    return True
+    length = pages * (int(page) if page != 1 else 65536)
+    return length if path.stat().st_size < length else None
 
 
 class SqliteWalk(Walk):

@@ -132,6 +132,17 @@ def test_a_file_that_finds_no_room_says_where(tmp_path: Path, monkeypatch: pytes
         Bag(path)
 
 
+def test_a_file_cut_off_whose_copy_finds_no_room_says_where(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = rec.storage_file(rec.write(tmp_path / "bag", rec.small(0.2), storage=rec.SQLITE))
+    content = bytearray(path.read_bytes())
+    struct.pack_into(">H", content, 16, 1)  # stands for pages of 65536 bytes
+    struct.pack_into(">I", content, 28, 2**32 - 1)
+    path.write_bytes(content)
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "not there"))
+    with pytest.raises(BagError, match=r"is cut off, and a copy of the 2\.815e\+08 MB .* cannot be made in .*TMPDIR"):
+        Bag(path)
+
+
 MESSAGES = {
     "a view": "CREATE VIEW messages AS WITH RECURSIVE c(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM c) "
     "SELECT x AS id, 1 AS topic_id, x AS timestamp, x'00' AS data FROM c",
