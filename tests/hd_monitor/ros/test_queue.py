@@ -1,5 +1,7 @@
 """Queues have the depth requested, as far as the middleware allows."""
 
+import os
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -21,6 +23,22 @@ def test_without_a_known_limit_a_queue_is_as_deep_as_requested(monkeypatch: pyte
 
     monkeypatch.setattr(rclpy, "get_rmw_implementation_identifier", lambda: "rmw_cyclonedds_cpp")
     assert queue_depth(1000.0, 20.0) == 20_000
+
+
+@pytest.mark.parametrize("own", [{}, {"FASTDDS_DEFAULT_PROFILES_FILE": "mine.xml"}], ids=["none", "of the user"])
+def test_the_profile_that_returns_memory_gives_way_to_the_users_own(
+    own: dict[str, str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from hd_monitor.ros.queue import return_memory
+
+    monkeypatch.setattr(os, "environ", dict(own))
+    return_memory()
+    if own:
+        assert os.environ == own
+    else:
+        assert os.environ["RMW_FASTRTPS_USE_QOS_FROM_XML"] == "1"
+        content = Path(os.environ["FASTRTPS_DEFAULT_PROFILES_FILE"]).read_text(encoding="utf-8")
+        assert "<historyMemoryPolicy>DYNAMIC<" in content
 
 
 def test_the_deepest_queue_still_drops_the_oldest_message_and_not_the_newest(peer: Any) -> None:
