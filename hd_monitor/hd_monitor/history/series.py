@@ -142,8 +142,11 @@ def _is_repetition(motion: Motion, of: Motion) -> bool:
     one, other = ([piece for piece in pieces if piece.k == 1] for pieces in (motion, of))
     if not one or [piece.name for piece in one] != [piece.name for piece in other]:
         return False
-    first, second = ([(piece.travel, piece.speed, piece.seconds) for piece in pieces] for pieces in (one, other))
-    return np.allclose(first, second, rtol=SAME_MOTION, atol=0.0)
+    numbers = (
+        zip((a.travel, a.speed, a.seconds), (b.travel, b.speed, b.seconds), strict=True)
+        for a, b in zip(one, other, strict=True)
+    )
+    return all(math.isclose(a, b, rel_tol=SAME_MOTION) for pairs in numbers for a, b in pairs)
 
 
 def _readings(entry: Entry, repeated: Motion) -> Iterator[tuple[str, str, float, float, float, float]]:
