@@ -215,7 +215,8 @@ def shifted(samples: JointSamples, rng: np.random.Generator) -> FloatArray:
     """
     pace = np.abs(samples.speed)
     moves = pace > 0.1 * pace.max()
-    for by in (rng.uniform(0.1, 0.9, 100) * pace.size).astype(int).tolist():
+    for _ in range(100):
+        by = int(rng.uniform(0.1, 0.9) * pace.size)
         alike = np.abs(np.roll(pace, by) - pace) < 0.02 * pace
         if alike[moves].mean() < REPEATED:
             return np.roll(samples.effort, by)
