@@ -44,6 +44,14 @@ PARAMETERS = (
         inertia_uncertainty=number(
             0.2, "", 0.0, 1.0, "the same of the inertia, and so of the scale of every stiffness index"
         ),
+        hardening_uncertainty=number(
+            0.2,
+            "",
+            0.0,
+            1.0,
+            "how much softer or stiffer the reducer may be at other torques than the usual one, as catalogues state by "
+            "K1, K2 and K3: a standard deviation, as a part of the stiffness; 0: the same at every torque",
+        ),
     ),
     *parameters_of(InputSettings, "input."),
     *parameters_of(LoadSettings, "load."),

@@ -15,6 +15,8 @@ class Uncertainty:
     ----------
     natural_frequency, damping, inertia, measured_torque, assumed_torque : float
         As parts of the value; the torque's are those of its scale.
+    hardening : float
+        Of the stiffness at other torques than the usual one, as a part of that.
     delay : float
         Of the lag between the stamps of vibration and joint states [s].
     clock_drift : float
@@ -24,6 +26,7 @@ class Uncertainty:
     natural_frequency: float
     damping: float
     inertia: float
+    hardening: float
     measured_torque: float
     assumed_torque: float
     delay: float
@@ -40,6 +43,7 @@ class Uncertainty:
             natural_frequency=number("dynamics.natural_frequency_uncertainty"),
             damping=number("dynamics.damping_uncertainty"),
             inertia=number("dynamics.inertia_uncertainty"),
+            hardening=number("dynamics.hardening_uncertainty"),
             measured_torque=number("load.torque_uncertainty"),
             assumed_torque=number("load.assumed_uncertainty"),
             delay=number("input.delay_uncertainty"),

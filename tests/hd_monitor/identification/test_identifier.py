@@ -103,10 +103,11 @@ def test_a_value_on_its_bound_is_reported_and_not_shown_as_a_measurement():
     assert LimitationCode.NATURAL_FREQUENCY_CORRECTED not in [doubt.code for doubt in result.doubts]
 
 
-def test_a_lag_between_the_clocks_is_noticed():
-    truth = case(motion="strokes", speed=900.0)
+@pytest.mark.parametrize(("motion", "shift"), [("strokes", 4), ("run_up", 4), ("run_up", 42)])
+def test_a_lag_between_the_clocks_is_noticed(motion, shift):
+    """The vibration comes some samples of 1 ms late."""
+    truth = case(motion=motion, speed=900.0)
     records = simulate(truth)
-    shift = 4  # samples of 1 ms by which the vibration comes late
     acceleration = np.concatenate([r.acceleration for r in records])
     late = np.concatenate([np.full(shift, np.nan), acceleration[:-shift]]).reshape(len(records), -1)
     records = [replace(r, acceleration=row) for r, row in zip(records, late, strict=True)]

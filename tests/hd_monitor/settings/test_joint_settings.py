@@ -66,6 +66,7 @@ def test_every_parameter_is_a_typed_field_of_its_group():
         "dynamics.natural_frequency_uncertainty": joint.uncertainty.natural_frequency,
         "dynamics.damping_uncertainty": joint.uncertainty.damping,
         "dynamics.inertia_uncertainty": joint.uncertainty.inertia,
+        "dynamics.hardening_uncertainty": joint.uncertainty.hardening,
     }
     for parameter in PARAMETERS:
         group, _, field = parameter.name.partition(".")

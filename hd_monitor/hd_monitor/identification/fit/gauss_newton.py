@@ -196,15 +196,16 @@ class Problem:
         """Solve from the most promising of several starts; return the solutions, the best first, with their floors.
 
         Left out are those that the best one excludes by far. What a start promises is its cost after one step, by the
-        quadratic model at the start, with the load as the start has it: only then do the stiffness unknowns mean
-        anything to the load. A varying stiffness and a transmission error resemble each other, and the way from one to
-        the other is long and bent: so the step is also taken with either alone. While the residual is still large the
-        floor is assumed white, otherwise the lines not explained yet would pass for noise.
+        quadratic model at the start, with load, clocks and oscillator as the start has them: without any lines they
+        mean nothing to the data, and the prior would take them back to what was given. A varying stiffness and a
+        transmission error resemble each other, and the way from one to the other is long and bent: so the step is also
+        taken with either alone. While the residual is still large the floor is assumed white, otherwise the lines not
+        explained yet would pass for noise.
         """
         u = self.predictor.unknowns
-        kinds = [u.mask(u.load)]
+        kinds = [u.mask(u.load, u.frequency, u.damping, u.delay, u.drift)]
         if u.transmission_error:
-            kinds += [u.mask(u.load, u.displacement), u.mask(u.load, u.stiffness)]
+            kinds += [kinds[0] | u.mask(u.displacement), kinds[0] | u.mask(u.stiffness)]
         fits = [self.at(start) for start in starts]
         final = []
         for held in kinds:

@@ -10,11 +10,16 @@ from ...model.oscillator import GAUSS_OFFSETS, Oscillator, gauss_times
 from ...model.parameters import Dynamics
 from ...reducer import ARCMIN
 from ..segment.path import Path
-from ..segment.segment import Segment
+from ..segment.segment import Segment, Twist
+from .hardening import Hardening
 from .unknowns import Unknowns
 
 _ERROR_UNIT = 0.5 * ARCMIN
 """Amplitude [rad] of one arcmin peak to peak."""
+
+_NEWTON_STEPS = 8
+_NEGLIGIBLE = 1e-4
+"""Error of the restoring torque, over the reference torque, by taking it as linear about a motion near the true one."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -31,12 +36,15 @@ class Linearisation:
         Derivatives of the prediction by the unknowns, and by the inertia at its knots where it wanders.
     free : ndarray, shape (samples, 2)
         The two free vibrations: whatever the state at the segment's start was, it is a combination of them.
+    twist : Twist or None
+        About which the law of the restoring torque is linear; None if it is throughout.
     """
 
     residual: FloatArray
     predicted: FloatArray
     jacobian: FloatArray
     free: FloatArray
+    twist: Twist | None = None
 
     def moved(self, segment: Segment, step: FloatArray) -> "Linearisation":
         """Return the linearisation at a point a small `step` of the unknowns on, to first order of the step.
@@ -69,43 +77,58 @@ class Predictor:
         """Simulate a segment and, along the same motion, the effect of every unknown.
 
         Every sensitivity obeys the oscillator's own equation with another input (differentiate eq. 3 of Gu et al.
-        2021 by the unknown), so that one set of transition matrices serves them all.
+        2021 by the unknown), so that one set of transition matrices serves them all. Where the stiffness depends on
+        the twist, that equation is linear about the motion, which Newton's method finds.
         """
         dynamics = self.unknowns.dynamics(self.given, values)
         omega, step = dynamics.angular_frequency, segment.period / segment.substeps
         limit = segment.low_pass.limit if segment.fastest > segment.low_pass.limit else math.inf
         steps = segment.at_gauss.torque.shape[1]
-        gauss = _Along(self, segment.at_gauss, values, dynamics, limit)
-        nodes = _Along(self, segment.at_steps, values, dynamics, limit)
-        damping: float | FloatArray = 2.0 * dynamics.damping_ratio * omega
-        if segment.wander is None:
-            oscillator = Oscillator(dynamics, gauss.stiffness - 1.0, step)
-        else:
+        before = segment.twist or Twist(None, None)
+        gauss = _Along(self, segment.at_gauss, values, dynamics, limit, before.at_gauss)
+        nodes = _Along(self, segment.at_steps, values, dynamics, limit, before.at_steps)
+        if segment.wander is not None:
             gauss.wander(segment.wander.hats(gauss_times(np.arange(steps + 1) / steps)), segment.wander.values)
             nodes.wander(segment.wander.hats(np.arange(steps + 1) / steps), segment.wander.values)
-            oscillator = Oscillator(dynamics, gauss.ease * gauss.stiffness - 1.0, step, damping * gauss.ease)
-            damping = damping * nodes.ease[:, None]
-        spring = (omega**2 * nodes.ease * nodes.stiffness)[:, None]
+        damping = 2.0 * dynamics.damping_ratio * omega * nodes.ease[..., None]
 
         # From the quasi-static wind-up, and the two free vibrations
-        inputs, force = np.zeros((2, oscillator.steps, 3)), np.zeros((oscillator.steps + 1, 3))
-        inputs[..., 0], force[:, 0] = gauss.ease * gauss.excitation, nodes.ease * nodes.excitation
-        wound = force[0, 0] / spring[0, 0]
-        base = oscillator.respond(inputs, initial=[[wound, 1.0, 0.0], [0.0, 0.0, omega]])
-        motion = force - damping * base.velocity - spring * base.displacement
-        sampled = segment.heard(motion)
-        start, residual = _fit_free(segment, segment.acceleration - sampled[:, 0], sampled[:, 1:])
-        mix = np.concatenate([[1.0], start])
-        theta, theta_dot, theta_ddot = base.displacement @ mix, base.velocity @ mix, motion @ mix
+        inputs, force = np.zeros((2, steps, 3)), np.zeros((steps + 1, 3))
+        initial = [[nodes.wound[0], 1.0, 0.0], [0.0, 0.0, omega]]
+        for _ in range(_NEWTON_STEPS):
+            oscillator, spring = self._linear(dynamics, gauss, nodes, step)
+            inputs[..., 0], force[:, 0] = gauss.ease * gauss.push, nodes.ease * nodes.push
+            base = oscillator.respond(inputs, initial=initial)
+            motion = force - damping * base.velocity - spring * base.displacement
+            sampled = segment.heard(motion)
+            start, residual = _fit_free(segment, segment.acceleration - sampled[:, 0], sampled[:, 1:])
+            mix = np.concatenate([[1.0], start])
+            theta, theta_dot, theta_ddot = base.displacement @ mix, base.velocity @ mix, motion @ mix
+            theta_gauss = _hermite(theta, theta_dot * step)
+            if max(nodes.follow(theta), gauss.follow(theta_gauss)) < _NEGLIGIBLE:
+                break
+        if nodes.hardens:
+            oscillator, spring = self._linear(dynamics, gauss, nodes, step)
 
-        u_gauss = gauss.forcing(_hermite(theta, theta_dot * step), _hermite(theta_dot, theta_ddot * step))
+        u_gauss = gauss.forcing(theta_gauss, _hermite(theta_dot, theta_ddot * step))
         change = oscillator.respond(u_gauss)
         jacobian = nodes.forcing(theta, theta_dot)
         jacobian -= damping * change.velocity
         jacobian -= spring * change.displacement
         return Linearisation(
-            residual=residual, predicted=sampled @ mix, jacobian=segment.heard(jacobian), free=sampled[:, 1:]
+            residual=residual,
+            predicted=sampled @ mix,
+            jacobian=segment.heard(jacobian),
+            free=sampled[:, 1:],
+            twist=Twist(nodes.twist, gauss.twist) if nodes.hardens else None,
         )
+
+    @staticmethod
+    def _linear(dynamics: Dynamics, gauss: "_Along", nodes: "_Along", step: float) -> tuple[Oscillator, FloatArray]:
+        """Oscillator about the motion as known so far, and its stiffness over inertia [1/s²] at the nodes."""
+        damping = 2.0 * dynamics.damping_ratio * dynamics.angular_frequency * gauss.ease if gauss.ease.ndim else None
+        oscillator = Oscillator(dynamics, gauss.ease * gauss.stiffness - 1.0, step, damping)
+        return oscillator, (dynamics.angular_frequency**2 * nodes.ease * nodes.stiffness)[:, None]
 
 
 class _Along:
@@ -114,9 +137,17 @@ class _Along:
     Of lines beyond `limit` [Hz] the sensor hears at most traces by their coupling with others, which are no evidence.
     """
 
-    def __init__(self, predictor: Predictor, path: Path, values: FloatArray, dynamics: Dynamics, limit: float) -> None:
+    def __init__(
+        self,
+        predictor: Predictor,
+        path: Path,
+        values: FloatArray,
+        dynamics: Dynamics,
+        limit: float,
+        twist: FloatArray | None,
+    ) -> None:
         self._unknowns = unknowns = predictor.unknowns
-        self._path, self._dynamics = path, dynamics
+        self._path = path
         self.ease = np.ones(())
         self._hats: FloatArray | None = None
         self._beta = values[unknowns.stiffness]
@@ -125,21 +156,46 @@ class _Along:
         self._speed_then = path.speed + (delay + drift * path.time) * path.acceleration
         self._unheard = np.abs(path.speed)[..., None] * path.rates > math.tau * limit if limit < math.inf else None
         self._load_unit = predictor.reference_torque / predictor.given.inertia
-        self._torque = math.exp(values[unknowns.torque]) / predictor.given.inertia * path.torque
-        self.stiffness = np.asarray(1.0 + lines @ self._beta)
+        self._known = math.exp(values[unknowns.torque]) / predictor.given.inertia * path.torque
+        self._fluctuation = np.asarray(1.0 + lines @ self._beta)
         inertial = values[unknowns.inertia] * path.acceleration
-        self.excitation = np.asarray(self._torque + self._load_unit * (path.loads @ values[unknowns.load]) - inertial)
+        self._excitation = np.asarray(self._known + self._load_unit * (path.loads @ values[unknowns.load]) - inertial)
+        self._omega = dynamics.angular_frequency
+        self._damping = 2.0 * dynamics.damping_ratio * self._omega
         self._errors = bool(unknowns.transmission_error)
+        self._error = self._error_rate = np.zeros(())
         if self._errors:
             # The error e winds the spring up as the vibration θ does: both forces act on θ + e
             series = _ERROR_UNIT * values[unknowns.displacement]
             slopes = path.turned(series)
-            omega, damping = dynamics.angular_frequency, 2.0 * dynamics.damping_ratio * dynamics.angular_frequency
             self._error = np.asarray(lines @ series)
             self._error_slope = np.asarray(lines @ slopes)
             self._error_bend = np.asarray(lines @ path.turned(slopes))
             self._error_rate = path.speed * self._error_slope
-            self.excitation -= omega**2 * self.stiffness * self._error + damping * self._error_rate
+            self._excitation -= self._damping * self._error_rate
+        unit = predictor.reference_torque / predictor.given.stiffness
+        self._law = Hardening(values=values[unknowns.hardening], unit=unit)
+        self.hardens = not self._law.is_linear
+        wound = self._law.twist(self._excitation / (self._omega**2 * self._fluctuation))
+        self.wound = wound - self._error
+        self.twist = wound if twist is None else twist
+        self._linearise()
+
+    def follow(self, theta: FloatArray) -> float:
+        """Take the restoring torque as linear about a motion; return its error so far, over the reference torque."""
+        if not self.hardens:
+            return 0.0
+        self.twist = theta + self._error
+        so_far = self._rest + self._slope * self.twist
+        self._linearise()
+        return float(np.abs(self._torque - so_far).max()) / self._law.unit
+
+    def _linearise(self) -> None:
+        """Find the coefficient of θ, over ωn², and the input [rad/s²] that belongs to it."""
+        self._torque, self._slope = self._law.torque(self.twist), self._law.slope(self.twist)
+        self._rest = self._torque - self._slope * self.twist
+        self.stiffness = self._fluctuation * self._slope
+        self.push = self._excitation - self._omega**2 * self._fluctuation * (self._rest + self._slope * self._error)
 
     def wander(self, hats: FloatArray, values: FloatArray) -> None:
         """Let ln(inertia) be `values` at the knots, whose weights along the path are `hats`."""
@@ -147,19 +203,19 @@ class _Along:
 
     def forcing(self, theta: FloatArray, theta_dot: FloatArray) -> FloatArray:
         """Inputs [rad/s² per unit of each unknown] where θ and θ' are as given, shape (..., unknowns + knots)."""
-        unknowns, path = self._unknowns, self._path
-        omega = self._dynamics.angular_frequency
-        damping = 2.0 * self._dynamics.damping_ratio * omega
-        twist, rate = (theta + self._error, theta_dot + self._error_rate) if self._errors else (theta, theta_dot)
-        spring = -(omega**2) * twist
+        unknowns, path, omega, damping = self._unknowns, self._path, self._omega, self._damping
+        twist, rate = theta + self._error, theta_dot + self._error_rate
+        spring = -(omega**2) * self._law.torque(twist)
         knots = 0 if self._hats is None else self._hats.shape[-1]
         forcing = np.empty((*theta.shape, unknowns.size + knots))
         np.multiply(self._lines, spring[..., None], out=forcing[..., unknowns.stiffness])
         np.multiply(path.loads, self._load_unit, out=forcing[..., unknowns.load])
         friction = -damping * rate
-        forcing[..., unknowns.frequency] = friction + 2.0 * spring * self.stiffness
+        forcing[..., unknowns.frequency] = friction + 2.0 * spring * self._fluctuation
+        stages = self._law.derivatives(twist)
+        np.multiply(stages, (-(omega**2) * self._fluctuation)[..., None], out=forcing[..., unknowns.hardening])
         forcing[..., unknowns.damping] = friction
-        forcing[..., unknowns.torque] = self._torque
+        forcing[..., unknowns.torque] = self._known
         forcing[..., unknowns.inertia] = -path.acceleration
         forcing[..., unknowns.delay] = spring * self._speed_then * (self._lines @ path.turned(self._beta))
         if self._errors:
@@ -176,7 +232,7 @@ class _Along:
                 forcing[..., unknowns.displacement][self._unheard] = 0.0
         if self._hats is not None:
             # More inertia slows all that moves: the whole of θ'' falls with it
-            total = self.excitation - damping * theta_dot - omega**2 * self.stiffness * theta
+            total = self._excitation - damping * theta_dot + spring * self._fluctuation
             np.multiply(self._hats, -total[..., None], out=forcing[..., unknowns.size :])
             forcing *= self.ease[..., None]
         return forcing

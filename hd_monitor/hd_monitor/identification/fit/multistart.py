@@ -19,8 +19,8 @@ START_LOADS = tuple(1.5 * cmath.exp(0.5j * math.pi * quarter) for quarter in ran
 START_FREQUENCIES = (-1.2, -0.8, -0.4, 0.4, 0.8, 1.2)
 """ln fn relative to the one given, in its standard deviations."""
 
-DELAY_STEP = 3e-3
-"""Distance [s] between starts for the lag of the clocks."""
+_LAG_STEP, _LARGEST_LAG = 1e-3, 2.5  # s; standard deviations
+_LAGS = 2  # that are tried
 
 NEWEST = 3.0
 """Motion [s] of the newest segments on which other solutions are tried."""
@@ -50,17 +50,36 @@ def load_starts(unknowns: Unknowns) -> list[FloatArray]:
 
 def other_starts(unknowns: Unknowns, std: FloatArray) -> list[FloatArray]:
     """Starts for a natural frequency that is not the one given, by its standard deviation among those of all."""
-    return _shifted(unknowns, unknowns.frequency, float(std[unknowns.frequency]) * np.asarray(START_FREQUENCIES))
+    shifts = float(std[unknowns.frequency]) * np.asarray(START_FREQUENCIES)
+    return [np.where(unknowns.mask(unknowns.frequency), shift, 0.0) for shift in shifts if shift]
 
 
-def delay_starts(unknowns: Unknowns, std: FloatArray) -> list[FloatArray]:
-    """Starts for clocks that do not agree."""
-    steps = int(0.75 * float(std[unknowns.delay]) / DELAY_STEP)
-    return _shifted(unknowns, unknowns.delay, DELAY_STEP * np.r_[-steps:0, 1 : steps + 1])
+def with_lags(problem: Problem, start: FloatArray, std: FloatArray) -> list[FloatArray]:
+    """Return a start without lines, with each lag of the clocks with which lines would explain most of the newest data.
 
-
-def _shifted(unknowns: Unknowns, place: int, shifts: FloatArray) -> list[FloatArray]:
-    return [np.where(unknowns.mask(place), shift, 0.0) for shift in shifts if shift]
+    A lag of the motion turns the spectrum of what is measured against that of the lines, so that one linearisation
+    serves every lag.
+    """
+    u = problem.predictor.unknowns
+    steps = int(_LARGEST_LAG * float(std[u.delay]) / _LAG_STEP)
+    if not steps:
+        return [start]
+    lags = _LAG_STEP * np.arange(-steps, steps + 1)
+    segments = newest_segments(problem.segments)
+    fit = replace(problem, segments=segments, floor=signal_level(segments)).at(start)
+    lines = problem.active & u.mask(u.stiffness, u.displacement, u.load)
+    scores = np.zeros((lags.size, int(lines.sum())))
+    for item in fit.segments:
+        bins = item.std.size // 2
+        turn = np.exp(-1j * math.tau * np.multiply.outer(lags, item.segment.frequencies))
+        turned = turn * (item.residual[:bins] + 1j * item.residual[bins:])
+        scores += np.concatenate([turned.real, turned.imag], axis=1) / item.std @ item.derivatives[:, lines]
+    information = (fit.equations.information + problem.prior.matrix)[np.ix_(lines, lines)]
+    gains = np.einsum("ij,ij->i", scores, np.linalg.lstsq(information, scores.T, rcond=1e-13)[0].T)
+    gains -= (lags / std[u.delay]) ** 2
+    peaks = [n for n in range(lags.size) if gains[n] == gains[max(n - 2, 0) : n + 3].max()]
+    likely = sorted(peaks, key=lambda n: -gains[n])[:_LAGS]
+    return [np.where(u.mask(u.delay), lag, start) for lag in lags[likely]]
 
 
 def signal_level(segments: Sequence[Segment]) -> NoiseFloor:

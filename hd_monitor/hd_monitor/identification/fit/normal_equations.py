@@ -164,7 +164,7 @@ def linearise(segment: Segment, predictor: Predictor, values: FloatArray, floor:
         rows = rows - known @ wander.response
         leverage = leverage + np.einsum("ij,ij->i", known @ inverse, known)
     return LinearisedSegment(
-        segment=segment,
+        segment=segment if line.twist is None else replace(segment, twist=line.twist),
         equations=NormalEquations(
             information=information,
             score=score,

@@ -10,6 +10,7 @@ from ...arrays import BoolArray, ComplexArray, FloatArray
 from ...model.parameters import Dynamics
 from ...settings import Uncertainty
 from ..segment.segment import FREQUENCY_MARGIN
+from .hardening import LEVELS
 
 TORQUE_LINES: Mapping[int, str] = {1: "", 2: ""}
 """Orders [cycles per output revolution] of unknown torques that are fitted along, and the part that each accuses.
@@ -22,6 +23,7 @@ EXACT = Uncertainty(
     natural_frequency=0.0,
     damping=0.0,
     inertia=0.0,
+    hardening=0.0,
     measured_torque=0.0,
     assumed_torque=0.0,
     delay=0.0,
@@ -31,6 +33,9 @@ EXACT = Uncertainty(
 
 LARGEST_BETA = 0.1
 """Standard deviation of the first β before any data; of the k-th a k-th part, as pitch errors fall with their order."""
+
+MEASURED_LOAD, ASSUMED_LOAD = 1.0, 2.0
+"""Standard deviations of load fluctuations, in units of the reference torque, beside a measured torque or not."""
 
 RELATIVE = 1.5
 """Standard deviation of ln(torque) where nothing is known of it."""
@@ -127,9 +132,14 @@ class Unknowns:
         return self.frequency + 5
 
     @property
+    def hardening(self) -> slice:
+        """Place of ln(stiffness / that at the reference torque), one at each other of the hardening's `LEVELS`."""
+        return slice(self.frequency + 6, self.frequency + 5 + len(LEVELS))
+
+    @property
     def size(self) -> int:
         """Number of unknowns."""
-        return self.frequency + 6
+        return int(self.hardening.stop)
 
     def load_line(self, order: int) -> list[int]:
         """Places of the real and the imaginary part of the load phasor at an order."""
@@ -147,15 +157,18 @@ class Unknowns:
             mask[place] = True
         return mask
 
-    def given_std(self, torque: float) -> FloatArray:
+    def given_std(self, torque: float, load: float) -> FloatArray:
         """Standard deviations of the unknowns before any data, shape (unknowns,); 0 of what is known exactly.
 
         Parameters
         ----------
         torque : float
             Standard deviation of ln(torque): it depends on where the torque comes from.
+        load : float
+            The same of the load fluctuations that the torque does not contain, in units of the reference torque.
         """
         std = self._scale(0)
+        std[self.load] = load
         std[self.torque] = math.hypot(torque, self.uncertainty.inertia)
         return std
 
@@ -176,7 +189,7 @@ class Unknowns:
         table: tuple[tuple[int | slice, float | FloatArray, float, float], ...] = (
             # place, standard deviation before any data, bound, linear range
             (self.stiffness, fluctuation, math.inf, 0.05),
-            (self.load, 2.0, math.inf, 1.0),
+            (self.load, ASSUMED_LOAD, math.inf, 1.0),
             (self.displacement, self.transmission_error / math.sqrt(2.0), math.inf, 5.0),
             (self.frequency, given.natural_frequency, math.log(FREQUENCY_MARGIN), 0.01),
             (self.damping, given.damping, 1.5, 0.3),
@@ -184,6 +197,7 @@ class Unknowns:
             (self.delay, given.delay, 0.1, 5e-4),
             (self.drift, given.clock_drift, 1e-2, 5e-5),
             (self.inertia, 0.7, math.inf, 1.0),
+            (self.hardening, given.hardening, 1.5, 0.1),
         )
         scale = np.empty(self.size)
         for place, *row in table:

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from scipy import fft
@@ -30,6 +31,13 @@ LARGEST_PHASE_STEP = 1.0
 """Phase [rad] of the natural oscillation and of the fastest stiffness harmonic that an integration step may cover."""
 
 _SIDE_ORDERS = 4.0  # orders above the highest line within which load fluctuations may cause side lines
+
+
+class Twist(NamedTuple):
+    """Twist of the reducer along a segment [rad]."""
+
+    at_steps: FloatArray | None
+    at_gauss: FloatArray | None
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -64,6 +72,8 @@ class Segment:
         Samples of the sensor behind it.
     wander : Wander or None
         Course of the inertia; None if it is constant.
+    twist : Twist or None
+        As predicted last: where to start from if the stiffness depends on it.
     """
 
     period: float
@@ -80,6 +90,7 @@ class Segment:
     low_pass: LowPass
     raw_samples: int
     wander: Wander | None = None
+    twist: Twist | None = None
 
     def __len__(self) -> int:
         """Return the number of samples, those left out included."""

@@ -16,7 +16,7 @@ from ..fit.information import Information
 from ..fit.linearisation import Predictor
 from ..fit.multistart import signal_level
 from ..fit.noise import NoiseFloor
-from ..fit.unknowns import RELATIVE, TORQUE_LINES, Unknowns
+from ..fit.unknowns import ASSUMED_LOAD, MEASURED_LOAD, RELATIVE, TORQUE_LINES, Unknowns
 from ..segment.segment import Segment, SegmentBuilder
 from .state import Setup, State
 
@@ -103,6 +103,8 @@ class Context:
             level = float(np.sqrt(np.mean(segment.at_steps.torque**2)))
             kept_from_zero = max(level, 0.1 * abs(self.given_torque), 1e-9 * self.given.stiffness)
             setup = replace(setup, reference_torque=kept_from_zero)
+        levels, (least, most) = np.abs(segment.at_steps.torque), setup.torques
+        setup = replace(setup, torques=(min(least, float(levels.min())), max(most, float(levels.max()))))
         if setup.wanders:
             segment = segment.wandering()
         return (segment if setup.mounting > 0.0 else segment.mirrored()), setup
@@ -115,8 +117,14 @@ class Context:
         """Standard deviations of the unknowns before any data, shape (unknowns,)."""
         sure = self.settings.uncertainty
         if setup.nominal_torque is not None:
-            return self.unknowns.given_std(RELATIVE)
-        return self.unknowns.given_std(sure.measured_torque if setup.measured else sure.assumed_torque)
+            std = self.unknowns.given_std(RELATIVE, ASSUMED_LOAD)
+        elif setup.measured:
+            std = self.unknowns.given_std(sure.measured_torque, MEASURED_LOAD)
+        else:
+            std = self.unknowns.given_std(sure.assumed_torque, ASSUMED_LOAD)
+        if not setup.torque_varies:
+            std[self.unknowns.hardening] = 0.0
+        return std
 
     def contradicts_torque(self, setup: Setup, values: FloatArray) -> bool:
         """Whether some values of the unknowns need a torque that is not credible beside the one given or measured."""

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from ...arrays import FloatArray
 from ..fit.gauss_newton import Fit, Problem
-from ..fit.multistart import delay_starts, is_better, load_starts, multistart_newest, newest_segments, other_starts
+from ..fit.multistart import is_better, load_starts, multistart_newest, newest_segments, other_starts, with_lags
 from ..fit.noise import NoiseFloor
 from ..segment.segment import Segment
 from ..segment.wander import Wander
@@ -16,6 +16,7 @@ from .state import State
 FOLLOWED = 3.0
 """Cost over its expectation up to which the course of an inertia counts as found."""
 
+_NOTICEABLE = 0.03  # amplitude left at the lines over that explained: less is noise that comes and goes with them
 _ROUNDS = 10
 _EFFORT = 16.0  # s of motion that a fit of all segments may predict
 _FEWEST = 4
@@ -37,10 +38,11 @@ def look_elsewhere(context: Context, state: State, fit: Fit | None) -> tuple[Sta
     u = context.unknowns
     state = replace(state, schedule=state.schedule.with_look(state.seconds))
     present = state.values if fit is None else fit.values
-    starts = [present, *load_starts(u), *other_starts(u, context.given_std(state.setup))]
-    if state.coverage.speed_varies:
-        starts += delay_starts(u, context.given_std(state.setup))
-    found = multistart_newest(context.problem_of_all(state), starts, rounds=_ROUNDS)
+    std, problem = context.given_std(state.setup), context.problem_of_all(state)
+    starts = [present, *load_starts(u)]
+    for start in [u.zero(), *other_starts(u, std)]:
+        starts += with_lags(problem, start, std) if state.coverage.speed_varies else [start]
+    found = multistart_newest(problem, starts, rounds=_ROUNDS)
     if fit is not None and not state.coverage.speed_varies:
         # At one speed several solutions explain the motion nearly as well: those on all of it decide
         state = state.restarted()
@@ -86,11 +88,13 @@ def turn_sensor(context: Context, state: State, fit: Fit) -> tuple[State, Fit]:
 
 
 def let_inertia_wander(context: Context, state: State, fit: Fit) -> tuple[State, Fit]:
-    """Try an inertia that moves along the motion, as an arm's does with its pose."""
+    """Try an inertia that moves along the motion, as an arm's does with its pose, if lines are left to be explained."""
+    if context.unexplained(state, fit).residual.unexplained < _NOTICEABLE:
+        return state, fit
     wandering = replace(
         state,
         recent=tuple(segment.wandering() for segment in state.recent),
-        setup=replace(state.setup, wanders=True),
+        setup=replace(state.setup, moving_since=state.seconds),
     )
     starts = [fit.values, context.unknowns.zero()]
     small, best = multistart_newest(context.problem_of_all(wandering), starts, rounds=_ROUNDS)[0]

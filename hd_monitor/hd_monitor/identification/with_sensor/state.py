@@ -19,6 +19,9 @@ from .schedule import Schedule
 UNSEEN = 3.0
 """Amplitude wrongly taken for defects, over that left at the lines: the unknowns follow what they can of anything."""
 
+TORQUE_VARIES = 1.25
+"""Ratio of torques from which the stiffness at one may differ from that at the other."""
+
 WINDOW = 16.0
 """Motion [s] that is kept to be fitted again as a whole; from then on each segment is used once."""
 
@@ -39,8 +42,10 @@ class Setup:
         Torque [N·m] in whose unit load fluctuations are expressed; 0 before the first segment.
     mounting : float
         1, or -1 for a sensor whose sign is against that of the torque.
-    wanders : bool
-        Whether the inertia moves, as an arm's does with its pose.
+    moving_since : float
+        Motion [s] after which the inertia was found to move, as an arm's does with its pose; inf if it was not.
+    torques : tuple of float
+        Smallest and largest magnitude [N·m] of the torque so far.
     """
 
     nominal_torque: float | None = None
@@ -48,7 +53,18 @@ class Setup:
     origin: float | None = None
     reference_torque: float = 0.0
     mounting: float = 1.0
-    wanders: bool = False
+    moving_since: float = math.inf
+    torques: tuple[float, float] = (math.inf, 0.0)
+
+    @property
+    def wanders(self) -> bool:
+        """Whether the inertia moves."""
+        return self.moving_since < math.inf
+
+    @property
+    def torque_varies(self) -> bool:
+        """Whether the torque varies by so much that the data tell how the stiffness depends on it."""
+        return self.torques[1] > TORQUE_VARIES * self.torques[0]
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
