@@ -48,6 +48,7 @@ class LimitationCode(StrEnum):
     LINES_PARTLY_HEARD = "lines_partly_heard"
     LINES_TOO_WEAK = "lines_too_weak"
     LINES_ABSENT = "lines_absent"
+    VALUES_TOO_FEW = "values_too_few"
     # What the model does not explain
     UNCERTAINTY_WIDENED = "uncertainty_widened"
     OTHER_PART = "other_part"
@@ -69,6 +70,7 @@ class LimitationCode(StrEnum):
 NOT_YET = frozenset(
     {
         LimitationCode.LINES_TOO_WEAK,
+        LimitationCode.VALUES_TOO_FEW,
         LimitationCode.INERTIA_MOVES,
         LimitationCode.ONE_STROKE,
         LimitationCode.NO_LINE_FOUND,

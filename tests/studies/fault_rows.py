@@ -95,7 +95,7 @@ FAULTS: dict[str, Fault] = {
     "offset": Fault(fault="offset of 50 rad/s²", rig={"sensor.offset": 50.0}),
     "noise": Fault(fault="noise a hundred times stronger", rig={"sensor.noise": 10.0}, cause="against the noise"),
     "spikes": Fault(fault="20 spikes a second", rig={"sensor.spike_rate": 20.0}),
-    "clipping": Fault(fault="clipping at 2 rad/s²", rig={"sensor.full_scale": 2.0}),
+    "clipping": Fault(fault="clipping at 2 rad/s²", rig={"sensor.full_scale": 2.0}, cause="clip"),
     "coarse": Fault(
         fault="steps of 5 rad/s²",
         rig={"sensor.resolution": 5.0},

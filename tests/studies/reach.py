@@ -4,9 +4,10 @@
 
 The sets, what each draws and what the monitor is told stand in `reach_sets.py`. A case is *right* if the last verdict
 names what is bad (``none`` where nothing is; the cause too where the set asks for it); *wrong* if any verdict accuses a
-spline that is not bad, or the last one calls a bad unit sound; otherwise it is undetermined. Beside them: the wrong
-ones among all verdicts; how often the 95 % intervals of indexes and transmission errors hold the truth at the end;
-processor time of the monitor per simulated second; and how often two plain rules name what is bad, and how often
+spline that is not bad, or the last one calls a bad unit sound; otherwise it is undetermined. That one line of a sound
+unit is the larger, which is said at level OK for want of a torque (``HD_UNRATED``), accuses nothing. Beside them: the
+wrong ones among all verdicts; how often the 95 % intervals of indexes and transmission errors hold the truth at the
+end; processor time of the monitor per simulated second; and how often two plain rules name what is bad, and how often
 something else, on the same data (see `plain_rules.py`).
 """
 
@@ -24,7 +25,7 @@ import numpy as np
 from hd_monitor.acquisition.record import Record
 from hd_monitor.arrays import FloatArray
 from hd_monitor.assessment import Assessment
-from hd_monitor.diagnosis.verdict import Component
+from hd_monitor.diagnosis.verdict import Component, FaultCode, Verdict
 from hd_monitor.settings import JointSettings
 from hd_sim_node.settings import RigSettings
 from hd_sim_node.simulation import Simulation, Stretch
@@ -69,7 +70,7 @@ class Outcome:
     drive : Drive
     name, number
         The set and the number in it.
-    verdicts : tuple of Component
+    verdicts : tuple of Verdict
         All of them, in order.
     last : Assessment
     rules : tuple of Component
@@ -81,7 +82,7 @@ class Outcome:
     name: str
     number: int
     drive: Drive
-    verdicts: tuple[Component, ...]
+    verdicts: tuple[Verdict, ...]
     last: Assessment
     rules: tuple[Component, ...]
     cost: float
@@ -89,8 +90,13 @@ class Outcome:
     @property
     def wrong_verdicts(self) -> int:
         """Verdicts that accuse a spline that is not bad; the last one also where it calls a bad unit sound."""
-        accusing = sum(bool(ACCUSES.get(component, set()) - {self.drive.bad}) for component in self.verdicts)
-        return accusing + (self.verdicts[-1] is Component.NONE and self.drive.bad != SOUND)
+        missed = self.verdicts[-1].component is Component.NONE and self.drive.bad != SOUND
+        return sum(map(self._accuses, self.verdicts)) + missed
+
+    def _accuses(self, verdict: Verdict) -> bool:
+        """Whether a verdict accuses a spline that is not bad."""
+        rated = self.drive.bad != SOUND or verdict.fault_code is not FaultCode.UNRATED
+        return rated and bool(ACCUSES.get(verdict.component, set()) - {self.drive.bad})
 
     @property
     def right(self) -> bool:
@@ -112,7 +118,8 @@ class Outcome:
 
     def __str__(self) -> str:
         """Say what went otherwise than it should."""
-        said = [v.value for n, v in enumerate(self.verdicts) if n == 0 or v is not self.verdicts[n - 1]]
+        names = [verdict.component for verdict in self.verdicts]
+        said = [name.value for n, name in enumerate(names) if n == 0 or name is not names[n - 1]]
         verdict, found, drive = self.last.verdict, self.last.identification, self.drive
         index, error = (" ".join(f"{100 * v:.2f}" for v in drive.index), " ".join(f"{v:.2f}" for v in drive.error))
         line = f"{self.name} {self.number}: bad {drive.bad}, index {index} %, error {error}′; said {' > '.join(said)}"
@@ -156,7 +163,7 @@ def judge(case: tuple[str, int, int]) -> Outcome:
         name=case[0],
         number=case[2],
         drive=drive,
-        verdicts=tuple(assessment.verdict.component for assessment in assessments),
+        verdicts=tuple(assessment.verdict for assessment in assessments),
         last=assessments[-1],
         rules=tuple(rule(settings, records) if records else Component.UNDETERMINED for _, rule in RULES),
         cost=spent / drive.rig["duration"],

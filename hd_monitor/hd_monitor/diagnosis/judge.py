@@ -111,6 +111,8 @@ class Judge:
             reason = "; ".join(map(describe_limitation, evidence.blockers))
             wait = all(blocker.is_not_yet for blocker in evidence.blockers)
             return Verdict.waiting(reason) if wait else self._undetermined(reason)
+        if evidence.is_unexplained:
+            return self._undetermined(describe_unexplained(evidence))
         if evidence.relative and math.isinf(evidence.scale_std):
             return self._assess_relative(evidence)
         verdict = self._assess_absolute(evidence)

@@ -32,7 +32,7 @@ SENTENCES: Mapping[LimitationCode, str] = {
     ),
     LimitationCode.TORQUE_CONTRADICTED: (
         "The vibration would fit {factor:.2g} times the torque given, or that much less inertia, more than either may "
-        "be wrong: check load.torque or the effort's unit, dynamics.inertia, and the sensor's gain and unit"
+        "be wrong: check load.torque or the effort's unit, dynamics.inertia, and the sensor's gain, unit and bandwidth"
     ),
     LimitationCode.TORQUE_ABSURD: (
         "A torque of {torque_nm:.3g} N·m would wind the reducer up by {wind_up_deg:.0f}°: check the effort's unit, "
@@ -129,8 +129,8 @@ SENTENCES: Mapping[LimitationCode, str] = {
     ),
     LimitationCode.INERTIA_MOVES: (
         "Only an inertia that moves along the motion explains the vibration: hold the other joints still, or check "
-        "teeth, mount, natural frequency and torque, and the sensor's gain and bandwidth; whether what is found stays "
-        "the same shows after {needed_s:.0f} s of motion, of which {motion_s:.0f} s are seen"
+        "teeth, mount, natural frequency and torque, and the sensor's gain and bandwidth; what is found counts once as "
+        "much motion again agrees with it"
     ),
     LimitationCode.SEGMENTS_DISAGREE: (
         "The inertia moves along the motion, and what is found differs from segment to segment {factor:.0f} times as "
@@ -152,6 +152,10 @@ SENTENCES: Mapping[LimitationCode, str] = {
     LimitationCode.LINES_TOO_WEAK: (
         "The lines are too weak against the noise at {speed_rpm:.0f} rpm (signal to noise {signal_to_noise_db:.0f} "
         "dB): turn faster, load the joint more, or record for longer"
+    ),
+    LimitationCode.VALUES_TOO_FEW: (
+        "Too few samples can be used so far: wait for more motion, or have the sensor sample faster, and neither clip "
+        "nor lose samples"
     ),
     LimitationCode.LINES_ABSENT: (
         "The sensor hears nothing of this joint: neither spline's line rises above the noise, as even those of a sound "

@@ -21,6 +21,10 @@ VAGUE = 0.2
 """Standard deviation of an index over its limit from which it is not known well."""
 
 
+MOST_UNEXPLAINED = 0.2
+"""Amplitude left at the lines, over that explained, beyond which the explanation is not to be trusted."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LineEstimate:
     """The k-th line pair as measured: amplitudes of the vibration signal, and their standard deviations.
@@ -142,9 +146,17 @@ class Identification:
 
     def is_hidden_by_misfit(self, limit: float) -> bool:
         """Whether the indexes would be known well, beside their `limit`, if the model explained the vibration."""
-        widened = [one.values["factor"] for one in self.doubts if one.code is LimitationCode.UNCERTAINTY_WIDENED]
-        std = max(self.index_std)
-        return bool(widened) and std > VAGUE * limit >= std / float(widened[0])
+        widened, std = self._widened, max(self.index_std)
+        return self.is_unexplained or bool(widened and std > VAGUE * limit >= std / float(widened.values["factor"]))
+
+    @property
+    def is_unexplained(self) -> bool:
+        """Whether the model leaves so much at the lines that no uncertainty makes up for it."""
+        return bool(self._widened and float(self._widened.values["unexplained"]) > MOST_UNEXPLAINED)
+
+    @property
+    def _widened(self) -> Limitation | None:
+        return next((one for one in self.doubts if one.code is LimitationCode.UNCERTAINTY_WIDENED), None)
 
     @property
     def doubts(self) -> tuple[Limitation, ...]:

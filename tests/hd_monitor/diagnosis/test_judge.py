@@ -237,3 +237,15 @@ def test_limits_can_change_while_running() -> None:
     assert settled(judge, evidence(0.01, 0.06)).component is Component.FLEXSPLINE
     judge.change_limits(replace(JointSettings.from_mapping().diagnosis, warn_index=0.10, error_index=0.2))
     assert settled(judge, evidence(0.01, 0.06)).component is Component.NONE
+
+
+@pytest.mark.parametrize(("cs", "fs"), [(0.01, 0.02), (0.01, 0.10)])
+@pytest.mark.parametrize("relative", [False, True])
+def test_nothing_is_said_of_lines_that_are_mostly_unexplained(cs: float, fs: float, relative: bool) -> None:
+    def left(part: float) -> Verdict:
+        widened = doubt(LimitationCode.UNCERTAINTY_WIDENED, factor=3.0, unexplained=part)
+        return settled(judge_of(), evidence(cs, fs, relative=relative, limitations=(widened,)))
+
+    assert left(0.1).component is not Component.UNDETERMINED
+    assert left(0.3).component is Component.UNDETERMINED
+    assert "not explained well enough" in left(0.3).sentence

@@ -11,16 +11,18 @@ from ...limitation import Limitation, LimitationCode, blocker, doubt
 from ..fit.gauss_newton import Fit, FitStatus
 from ..fit.unknowns import TORQUE_LINES
 from .context import Context
-from .state import WINDOW, State
+from .state import State
 
 SURE = 3.0
 """Standard deviations by which a value must differ from the one given before that is said."""
 
 _DISPUTED = 19.0  # inflation from which a wandering inertia, which can follow much, names no part
+_CONFIRMED = 2.0  # motion in all, over that on which a wandering inertia was found: as much again must agree with it
 _WIDENED = 2.25  # inflation of the variances that is worth mentioning
 _WIND_UP = 0.25  # rad; no reducer takes it
 _CORRECTED_FREQUENCY, _CORRECTED_DAMPING, _CORRECTED_TORQUE = 0.02, 0.3, 0.25
 _CORRECTED_DELAY = 1e-3  # s
+_FEWEST = 15.0  # values of the spectrum for each unknown
 _UNSEEN = 0.05  # standard deviation of a β from which its line was not heard at any speed
 _CHANCE = 1e-3  # of noise alone to reach what counts as a line
 _STARTS = 2.0  # by how much the best of several starts explains more of noise
@@ -32,13 +34,14 @@ def limitations_of(context: Context, state: State, fit: Fit, covariance: FloatAr
     std = np.sqrt(np.maximum(covariance.diagonal(), 0.0))
     found = [*_corrections(context, state, fit, std), *_other_parts(context, state, fit, std)]
     if state.inflation > _WIDENED:
-        found.append(doubt(LimitationCode.UNCERTAINTY_WIDENED, factor=math.sqrt(state.inflation)))
+        left = state.residual.unexplained
+        found.append(doubt(LimitationCode.UNCERTAINTY_WIDENED, factor=math.sqrt(state.inflation), unexplained=left))
     if state.setup.wanders:
-        if state.seconds < WINDOW:
-            found.append(blocker(LimitationCode.INERTIA_MOVES, motion_s=state.seconds, needed_s=WINDOW))
+        if state.seconds < _CONFIRMED * state.setup.moving_since:
+            found.append(blocker(LimitationCode.INERTIA_MOVES))
         elif state.inflation > _DISPUTED:
             found.append(blocker(LimitationCode.SEGMENTS_DISAGREE, factor=math.sqrt(state.inflation)))
-    missing = _absurd(context, state) or _too_weak(context, state, fit)
+    missing = _absurd(context, state) or _too_few(context, state) or _too_weak(context, state, fit)
     found.extend(one for one in (missing, _unheard(context, state, std)) if one is not None)
     return tuple(found)
 
@@ -49,6 +52,13 @@ def _absurd(context: Context, state: State) -> Limitation | None:
     if torque > _WIND_UP * context.given.stiffness and not state.relative:
         wind_up = math.degrees(torque / context.given.stiffness)
         return blocker(LimitationCode.TORQUE_ABSURD, torque_nm=torque, wind_up_deg=wind_up)
+    return None
+
+
+def _too_few(context: Context, state: State) -> Limitation | None:
+    """Return that there are too few values beyond those that the unknowns take up: no misfit would show yet."""
+    if state.floor is not None and float(state.floor.freedom.sum()) < _FEWEST * context.unknowns.size:
+        return blocker(LimitationCode.VALUES_TOO_FEW)
     return None
 
 

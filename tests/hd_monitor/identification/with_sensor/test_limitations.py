@@ -67,3 +67,12 @@ def test_a_torque_further_off_than_it_can_be_forbids_a_name(wrong: float) -> Non
 def test_how_far_off_a_torque_can_be_is_what_the_parameters_say() -> None:
     found = identified(0.2, **{"load.torque_uncertainty": 0.7})
     assert limits(found).get(LimitationCode.TORQUE_CORRECTED) is False
+
+
+@pytest.mark.parametrize(("duration", "blocked"), [(1.2, True), (6.0, False)])
+def test_a_slow_sensor_has_to_listen_for_longer(duration: float, blocked: bool) -> None:
+    rig = {"defect": "flexspline", "programme": "strokes", "duration": duration}
+    slow = {"sensor.rate": 250.0, "sensor.bandwidth": 100.0}
+    *_, last = assessed(rig | slow, {"input.expected_rate": 250.0})
+    assert last.identification is not None
+    assert limits(last.identification).get(LimitationCode.VALUES_TOO_FEW, False) is blocked
