@@ -40,7 +40,7 @@ def test_the_reducer_and_its_dynamics_are_the_monitors_own_parameters():
     not_of_the_rig = {p.name for p in shared} - set(mine)
     assert not_of_the_rig == {
         "reducer.serial", "reducer.transmission_error", "dynamics.natural_frequency_uncertainty",
-        "dynamics.damping_uncertainty", "dynamics.inertia_uncertainty",
+        "dynamics.damping_uncertainty", "dynamics.inertia_uncertainty", "dynamics.hardening_uncertainty",
     }  # fmt: skip
     assert all(mine[p.name] is p for p in shared if p.name in mine)
 

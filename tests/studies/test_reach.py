@@ -12,7 +12,10 @@ RIGHT = {
     "speed varies": 4,
     "steady": 3,
     "error": 4,
-    "wrongly given": 2,
+    "nonlinear": 1,
+    "wrongly given": 4,
+    "disturbed": 1,
+    "sound": 0,
 }
 """Right verdicts of `CASES` that a set reaches at least."""
 

@@ -108,8 +108,9 @@ def test_good_data_is_assessed_and_the_transition_handed_out_once() -> None:
     watch.check(START + 30 * SECOND)
     assert codes_of(watch.take_transitions()) == [("HD_WAITING", "HD_INPUT_LOST")]
     assert watch.feed(inputs_of(accelerations(100, 2.5), joint_states(100, 2.5)), START + 31 * SECOND)
-    # The vibration is nothing but noise
-    assert codes_of(watch.take_transitions()) == [("HD_UNDETERMINED", "HD_INPUT_OK")]
+    # Of so few samples nothing is said at first; then the vibration is nothing but noise
+    codes = codes_of(watch.take_transitions())
+    assert codes == [("HD_WAITING", "HD_INPUT_OK"), ("HD_UNDETERMINED", "HD_INPUT_OK")]
     assert watch.take_transitions() == []
     assert float(reducer(watch).value("samples")) >= 500
 

@@ -41,7 +41,7 @@ def limitations_of(context: Context, state: State, fit: Fit, covariance: FloatAr
             found.append(blocker(LimitationCode.INERTIA_MOVES))
         elif state.inflation > _DISPUTED:
             found.append(blocker(LimitationCode.SEGMENTS_DISAGREE, factor=math.sqrt(state.inflation)))
-    missing = _absurd(context, state) or _too_few(context, state) or _too_weak(context, state, fit)
+    missing = _absurd(context, state) or _too_weak(context, state, fit) or _too_few(context, state)
     found.extend(one for one in (missing, _unheard(context, state, std)) if one is not None)
     return tuple(found)
 
