@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from scipy.integrate import cumulative_simpson, solve_ivp
+from scipy.integrate import cumulative_trapezoid, solve_ivp
 
 from hd_monitor.acquisition.record import Record
 from hd_monitor.identification.fit.linearisation import Predictor
@@ -88,7 +88,7 @@ def test_prediction_agrees_with_an_adaptive_integrator():
     unit = TORQUE / DYNAMICS.stiffness
     twists = unit * np.linspace(0.0, 30.0, 300_001)
     local = np.exp(np.interp(twists / unit, [0.0, 0.25, 0.5, 1.0, 2.0], [-0.3, -0.2, -0.1, 0.0, 0.1]))
-    restoring = cumulative_simpson(local, x=twists, initial=0.0)
+    restoring = cumulative_trapezoid(local, x=twists, initial=0)
 
     def acceleration(t, x, v):
         e, de = error(t)
