@@ -31,6 +31,9 @@ class PolledGroup(CallbackGroup):
 MOST_AT_ONCE = 20_000_000
 """Bytes taken from a queue before other work has its turn."""
 
+_UNNAMED = "_NODE_NAME_UNKNOWN_"
+"""What the middleware calls the node of a publisher whose name has not reached it yet."""
+
 
 class DrainedSubscription:
     """A subscription whose queue of serialised messages is taken on request.
@@ -118,4 +121,6 @@ class DrainedSubscription:
 
 
 def _name(endpoint: Any) -> str:
+    if endpoint.node_name == _UNNAMED:
+        return "a node not known by name yet"
     return f"{endpoint.node_namespace.rstrip('/')}/{endpoint.node_name}"

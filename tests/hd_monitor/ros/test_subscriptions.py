@@ -1,5 +1,6 @@
 """The polled subscription: nothing reaches an executor, nothing is lost, nothing comes out of order."""
 
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -122,3 +123,15 @@ def test_several_publishers_are_named(peer: Any) -> None:
     peer.publisher(AccelStamped, "torsional_acceleration")
     expected = "two publishers on /torsional_acceleration: /test_peer, /test_peer"
     peer.until(lambda: subscription.explain_crowd() == expected, "both publishers in the graph")
+
+
+def test_a_publisher_whose_node_is_not_known_yet_gets_no_made_up_name(peer: Any, monkeypatch: Any) -> None:
+    """The middleware learns of a publisher a little before it learns its node's name."""
+    unknown = SimpleNamespace(
+        node_name="_NODE_NAME_UNKNOWN_", node_namespace="_NODE_NAMESPACE_UNKNOWN_", topic_type="sensor_msgs/msg/Imu"
+    )
+    subscription = drained(peer, 20)
+    monkeypatch.setattr(peer.node, "get_publishers_info_by_topic", lambda _: [unknown])
+    assert subscription.explain_silence().startswith(
+        "a node not known by name yet publishes /torsional_acceleration as"
+    )
