@@ -18,7 +18,7 @@ _ERROR_UNIT = 0.5 * ARCMIN
 """Amplitude [rad] of one arcmin peak to peak."""
 
 _NEWTON_STEPS = 8
-_NEGLIGIBLE = 1e-4
+_NONLINEAR = 1e-4
 """Error of the restoring torque, over the reference torque, by taking it as linear about a motion near the true one."""
 
 
@@ -105,7 +105,7 @@ class Predictor:
             mix = np.concatenate([[1.0], start])
             theta, theta_dot, theta_ddot = base.displacement @ mix, base.velocity @ mix, motion @ mix
             theta_gauss = _hermite(theta, theta_dot * step)
-            if max(nodes.follow(theta), gauss.follow(theta_gauss)) < _NEGLIGIBLE:
+            if max(nodes.follow(theta), gauss.follow(theta_gauss)) < _NONLINEAR:
                 break
         if nodes.hardens:
             oscillator, spring = self._linear(dynamics, gauss, nodes, step)

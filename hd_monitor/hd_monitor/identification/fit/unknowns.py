@@ -165,7 +165,8 @@ class Unknowns:
         torque : float
             Standard deviation of ln(torque): it depends on where the torque comes from.
         load : float
-            The same of the load fluctuations that the torque does not contain, in units of the reference torque.
+            Standard deviation of the load fluctuations that the torque does not contain, in units of the reference
+            torque.
         """
         std = self._scale(0)
         std[self.load] = load

@@ -185,3 +185,15 @@ def test_a_large_step_is_not_believed_without_a_simulation():
     start = UNKNOWNS.zero()
     fit = task.solve(start, rounds=1)
     np.testing.assert_allclose(fit.cost, task.at(fit.values).cost, rtol=1e-9)
+
+
+def test_the_first_step_from_a_start_leaves_clocks_and_oscillator_as_the_start_has_them():
+    """Without lines the data say nothing of them, and the prior alone would take them back to 0."""
+    held = {UNKNOWNS.frequency: 0.1, UNKNOWNS.damping: 0.2, UNKNOWNS.delay: 0.02}
+    start = UNKNOWNS.zero()
+    for place, value in held.items():
+        start[place] = value
+    free = replace(problem(segment(6)), active=ACTIVE | UNKNOWNS.mask(*held))
+    ((_, fit),) = free.multistart([start], rounds=0)
+    assert {place: fit.values[place] for place in held} == held
+    assert fit.values[ACTIVE].any()
