@@ -133,4 +133,5 @@ def _missing(error: ModuleNotFoundError) -> str:
             f"needs ROS 2 ({name} is missing): source your ROS installation, or run pip install '.[ros]' "
             "in the checkout"
         )
-    return f"needs the Python package {name!r}, which is not installed: run pip install '.[offline]' in the checkout"
+    extra = "parquet" if name == "pyarrow" else "offline"
+    return f"needs the Python package {name!r}, which is not installed: run pip install '.[{extra}]' in the checkout"

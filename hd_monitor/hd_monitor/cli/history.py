@@ -4,7 +4,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from ..errors import OutputError, ParameterError
+from ..errors import ParameterError
 from ..history.entry import Kind
 from ..history.ledger import Ledger
 from ..offline.history import COLUMNS, as_csv, as_dict, read_histories, rows, table
@@ -33,6 +33,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Show the ledger; return the exit status."""
+    if arguments.parquet:
+        import pyarrow.parquet  # before any work: it may be missing
     for path in (arguments.csv, arguments.parquet):
         if path:
             check_file(path)
@@ -54,7 +56,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.csv:
         write_file(arguments.csv, as_csv(histories))
     if arguments.parquet:
-        _write_parquet(arguments.parquet, list(rows(histories)))
+        pyarrow.parquet.write_table(pyarrow.table(_columns(list(rows(histories)))), arguments.parquet)
     if arguments.report:
         from ..offline.report.history_page import write_history
 
@@ -76,11 +78,6 @@ def _path(arguments: argparse.Namespace) -> Path:
     return Path(paths.pop()).expanduser()
 
 
-def _write_parquet(path: Path, values: list[tuple[object, ...]]) -> None:
-    try:
-        import pyarrow as pa
-        from pyarrow import parquet
-    except ImportError:
-        raise OutputError("Parquet needs pyarrow: pip install pyarrow, or write --csv") from None
+def _columns(values: list[tuple[object, ...]]) -> dict[str, list[object]]:
     columns = zip(*values, strict=True) if values else [()] * len(COLUMNS)
-    parquet.write_table(pa.table(dict(zip(COLUMNS, map(list, columns), strict=True))), path)
+    return dict(zip(COLUMNS, map(list, columns), strict=True))
