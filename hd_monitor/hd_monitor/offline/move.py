@@ -2,9 +2,12 @@
 
 That is around the natural frequency: there a stiffness that fluctuates and a transmission error answer differently,
 and both stand out of the motor's ripple, which slow motion shows alone. Different speeds distinguish a line from a
-tone, both directions show friction, and the longest travel separates the two splines best.
+tone, both directions show friction, and the longest travel separates the two splines best. The slowest strokes come
+first, then faster ones up through the resonance and back: far below it the lines show torque and stiffness as they are,
+so that the estimate is near the truth by the time the resonance comes.
 """
 
+import itertools
 import math
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -77,15 +80,14 @@ def plan_move(settings: JointSettings, limits: MoveLimits, seconds: float) -> Mo
     slowest, fastest = top_speeds(settings, limits)
     travel = whole = limits.upper - limits.lower
     peaks = np.geomspace(slowest, fastest, SPEEDS)
-    while (count := _fitting(peaks, travel, limits, seconds)) < FEWEST and travel > 0.05 * whole:
+    while len(rising := sorted(_fitting(peaks, travel, limits, seconds))) < FEWEST and travel > 0.05 * whole:
         travel *= _SHORTER
-    if not count:
+    if not rising:
         raise ParameterError(f"{seconds:g} s are too short for two strokes at {fastest:.3g} rad/s; allow more time")
     start = 0.5 * (limits.lower + limits.upper - travel)
     times, positions, velocities = [0.0], [start], [0.0]
-    for place in range(count):
+    for peak in [*rising[::2], *rising[1::2][::-1]]:
         for sign in (1.0, -1.0):
-            peak = _reached(float(peaks[::-1][place % SPEEDS]), travel, limits)
             ramp = peak / limits.acceleration
             hold = travel / peak - ramp
             for duration, velocity in ((ramp, sign * peak), (hold, sign * peak), (ramp, 0.0)):
@@ -122,20 +124,15 @@ def top_speeds(settings: JointSettings, limits: MoveLimits) -> tuple[float, floa
     return max(slowest, 1.5 * standing), fastest
 
 
-def _reached(peak: float, travel: float, limits: MoveLimits) -> float:
-    """Top speed of a stroke, which may be too short for `peak`."""
-    return min(peak, math.sqrt(limits.acceleration * travel))
-
-
-def _fitting(peaks: FloatArray, travel: float, limits: MoveLimits, seconds: float) -> int:
-    """Strokes there and back, the fastest first, that fit into a time."""
-    total, count = 0.0, 0
-    while True:
-        peak = _reached(float(peaks[::-1][count % SPEEDS]), travel, limits)
+def _fitting(peaks: FloatArray, travel: float, limits: MoveLimits, seconds: float) -> list[float]:
+    """Top speeds of the strokes there and back that fit into a time: all in turn, the fastest first."""
+    total, fitting = 0.0, list[float]()
+    for peak in itertools.cycle(np.minimum(peaks[::-1], math.sqrt(limits.acceleration * travel)).tolist()):
         total += 2.0 * (travel / peak + peak / limits.acceleration)
         if total > seconds:
-            return count
-        count += 1
+            break
+        fitting.append(peak)
+    return fitting
 
 
 def trajectory_yaml(move: Move, joint: str) -> str:

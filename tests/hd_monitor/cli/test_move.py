@@ -1,5 +1,6 @@
 """A health-check move keeps the joint's limits and carries the lines where they tell most."""
 
+import itertools
 import math
 from pathlib import Path
 
@@ -42,6 +43,16 @@ def test_both_directions_have_the_same_speeds_and_these_differ():
     tops = {sign: {round(v, 6) for v in sign * move.velocities if v > 0.0} for sign in (1.0, -1.0)}
     assert tops[1.0] == tops[-1.0]
     assert len(tops[1.0]) >= 3
+
+
+@pytest.mark.parametrize("limits", [limits_of(), limits_of(upper=0.0), limits_of(-3.0, 3.0)])
+def test_the_strokes_rise_from_the_slowest_and_come_down_again(limits):
+    move = plan_move(JointSettings.from_mapping(), limits, 60.0)
+    tops = [top for top, _ in itertools.groupby(np.abs(move.velocities).round(6)) if top > 0.0]
+    fastest = tops.index(max(tops))
+    assert 0 < fastest < len(tops) - 1
+    assert tops == sorted(tops[:fastest]) + sorted(tops[fastest:], reverse=True)
+    assert tops[0] == min(tops)
 
 
 @pytest.mark.parametrize("source", ["block", "joint_effort"])
