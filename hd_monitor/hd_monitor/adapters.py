@@ -50,11 +50,15 @@ class Inputs:
 
     def __init__(self, joint: str, settings: JointSettings, sink: Sink) -> None:
         self._sink = sink
-        self._settings = settings
-        self._sources = settings.all_sources
+        self.change(settings)
         self._joint = settings.input.joint_name or joint
         self._takes_any = not settings.input.joint_name and joint == UNNAMED_JOINT
         self._joint_seen = False
+
+    def change(self, settings: JointSettings) -> None:
+        """Put other settings in force, with the same source and joint."""
+        self._settings = settings
+        self._sources = settings.all_sources
 
     def add(self, quantity: Quantity, messages: Sequence[bytes]) -> None:
         """Feed messages of one of the joint's topics, in the order of their arrival."""

@@ -1,7 +1,8 @@
 """Errors that hd_monitor raises on purpose: each message states the value, the consequence and what to do."""
 
 import reprlib
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from difflib import get_close_matches
 
 UNUSABLE_INPUT = 2
 """Exit status for unusable input or parameters, or a package that is not installed."""
@@ -25,6 +26,20 @@ def listed(names: Sequence[str]) -> str:
     few = names[:_LISTED]
     shown = [name if name.isprintable() and 0 < len(name) < _LONGEST else reprlib.repr(name) for name in few]
     return ", ".join(shown) + (f" and {len(names) - _LISTED} more" if len(names) > _LISTED else "")
+
+
+def did_you_mean(word: str, known: Iterable[str]) -> str:
+    """Write a hint at the known word that a misspelt one resembles, to follow a sentence; empty if none does.
+
+    Examples
+    --------
+    >>> did_you_mean("elbwo", ["shoulder", "elbow"])
+    '; did you mean elbow?'
+    >>> did_you_mean("gripper", ["shoulder", "elbow"])
+    ''
+    """
+    close = get_close_matches(word, list(known), n=1)
+    return f"; did you mean {close[0]}?" if close else ""
 
 
 class HdMonitorError(ValueError):

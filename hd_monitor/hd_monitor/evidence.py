@@ -70,6 +70,11 @@ class Evidence:
         self._steady = SteadySegment(settings.reducer, settings.analysis.minimum_speed)
         self._identifier = identifier or new_identifier(settings)
 
+    def change(self, settings: JointSettings) -> None:
+        """Put other settings in force that leave the evidence valid."""
+        self._settings = settings
+        self._identifier.change(settings)
+
     def add(self, period: AssembledPeriod) -> bool:
         """Take in another period; one whose positions and velocities contradict each other is left out.
 

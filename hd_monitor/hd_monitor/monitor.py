@@ -158,9 +158,13 @@ class Monitor:
         """Say that nothing came until `now` [ns], by the messages' clock; verdict and evidence are kept."""
         return self._pack(now, self._verdict, describe_silence(self._presence.absent), None)
 
-    def change_limits(self, settings: JointSettings) -> None:
-        """Put the ``diagnosis.*`` parameters of other settings in force, without losing any evidence."""
+    def change(self, settings: JointSettings) -> None:
+        """Put other settings in force that leave the evidence valid: see :func:`hd_monitor.settings.check_change`."""
         self.settings = settings
+        self._presence.change(settings)
+        self._intake.change(settings)
+        self._recorder.change(settings)
+        self._evidence.change(settings)
         self._judge.change_limits(settings.diagnosis)
 
     def reset_latch(self) -> None:

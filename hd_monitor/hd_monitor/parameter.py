@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from typing import TYPE_CHECKING, Any
 
-from .errors import ParameterError
+from .errors import ParameterError, did_you_mean
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
@@ -132,7 +132,8 @@ def check_all(parameters: Sequence[Parameter], given: Mapping[str, Any], *, owne
     values: dict[str, Value] = {parameter.name: parameter.default for parameter in parameters}
     for name, value in flatten(given).items():
         if name not in table:
-            raise ParameterError(f"{name} is not a parameter of {owner}; see msgs_doc/parameters.md for their list")
+            hint = did_you_mean(name, table) or "; see msgs_doc/parameters.md for their list"
+            raise ParameterError(f"{name} is not a parameter of {owner}{hint}")
         values[name] = table[name].check(value)
     return values
 

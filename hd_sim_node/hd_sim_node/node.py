@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable, Sequence
-from functools import lru_cache
+from functools import lru_cache, partial
 from importlib import import_module
 from typing import Any
 
@@ -13,7 +13,7 @@ from rclpy.parameter import Parameter as RosParameter
 from rclpy.qos import QoSProfile
 
 from hd_monitor.errors import HdMonitorError
-from hd_monitor.ros.declaration import answer, declare
+from hd_monitor.ros.declaration import answer, declare, with_real_numbers
 from hd_monitor.ros.managed_node import ManagedNode, logged, run
 from hd_monitor.ros.queue import queue_depth
 
@@ -52,6 +52,7 @@ class HdSimNode(ManagedNode):
         self._outlets: dict[str, Any] = {}
         self._timer: Any = None
         self._declare_all()
+        self.add_pre_set_parameters_callback(partial(with_real_numbers, self))
         self.add_on_set_parameters_callback(self._check)
         self.add_post_set_parameters_callback(self._apply)
         if self.get_parameter("autostart").value:

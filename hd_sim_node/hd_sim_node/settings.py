@@ -3,10 +3,9 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from difflib import get_close_matches
 from typing import Any, Self
 
-from hd_monitor.errors import ParameterError
+from hd_monitor.errors import ParameterError, did_you_mean
 from hd_monitor.model import Dynamics, ParametricModel, StiffnessSeries, Torque
 from hd_monitor.parameter import Parameter, check_all, fill_group, flatten
 from hd_monitor.reducer import Reducer
@@ -228,7 +227,6 @@ def pick(given: Mapping[str, Any], also: Sequence[Parameter] = ()) -> dict[str, 
     joints = flat.get("joints") or ()
     for name in flat:
         if name not in own | foreign and not name.startswith(tuple(f"{joint}." for joint in joints)):
-            close = get_close_matches(name, own, 1)
-            hint = f"; did you mean {close[0]}?" if close else "; see msgs_doc/parameters.md for their list"
+            hint = did_you_mean(name, own) or "; see msgs_doc/parameters.md for their list"
             raise ParameterError(f"{name} is not a parameter of the rig{hint}")
     return {name: value for name, value in flat.items() if name in own}

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from hd_monitor.cdr import decode_joint_states
-from hd_monitor.contract import Block, pack_block
+from hd_monitor.contract import TORSIONAL_ACCELERATION_BLOCK, Block, pack_block
 from hd_monitor.sources import JOINT_STATES
 
 MONITOR, RIG = "hd_monitor.ros", "hd_sim_node"
@@ -144,7 +144,15 @@ class Feeder:
 
     RATE, SAMPLES, SPEED = 1000, 50, 750.0  # Hz, samples a block, rpm
 
-    def __init__(self, peer: Any, *, namespace: str = "", joint: str = "joint", qos: Any = None) -> None:
+    def __init__(
+        self,
+        peer: Any,
+        *,
+        namespace: str = "",
+        joint: str = "joint",
+        qos: Any = None,
+        block_topic: str = TORSIONAL_ACCELERATION_BLOCK,
+    ) -> None:
         from rclpy.qos import QoSProfile
         from sensor_msgs.msg import JointState
         from std_msgs.msg import Float64MultiArray
@@ -152,7 +160,7 @@ class Feeder:
         self._peer = peer
         self._joint = joint
         qos = qos or QoSProfile(depth=1000)
-        self.blocks = peer.node.create_publisher(Float64MultiArray, f"{namespace}torsional_acceleration/block", qos)
+        self.blocks = peer.node.create_publisher(Float64MultiArray, f"{namespace}{block_topic}", qos)
         self.motion = peer.node.create_publisher(JointState, f"{namespace}joint_states", qos)
         self._sequence = 0
         self._start = peer.node.get_clock().now().nanoseconds
@@ -197,6 +205,17 @@ class Feeder:
 def feeder(peer: Any) -> Feeder:
     """Give a feeder of hand-made messages."""
     return Feeder(peer)
+
+
+def feed_until(bench: Bench, feeder: Feeder, samples: int) -> None:
+    # What comes before both topics are heard has no counterpart on the other, for which the monitor would wait.
+    bench.until(feeder.matched, "the monitor's subscriptions")
+
+    def counted() -> bool:
+        feeder.send(2)
+        return bool(bench.statuses) and bench.statuses[-1].number("samples") >= samples
+
+    bench.until(counted, f"{samples} samples")
 
 
 class TorqueSensor:

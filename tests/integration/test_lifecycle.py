@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 from tests.managed import change_state, set_parameter, state
 
-from .conftest import Bench, Feeder
+from .conftest import Bench, Feeder, feed_until
 
 pytestmark = pytest.mark.ros
 
@@ -16,17 +16,6 @@ def trigger(peer: Any, service: str) -> Any:
     from std_srvs.srv import Trigger
 
     return peer.call(Trigger, f"hd_monitor_node/{service}", Trigger.Request())
-
-
-def feed_until(bench: Bench, feeder: Feeder, samples: int) -> None:
-    # What comes before both topics are heard has no counterpart on the other, for which the monitor would wait.
-    bench.until(feeder.matched, "the monitor's subscriptions")
-
-    def counted() -> bool:
-        feeder.send(2)
-        return bool(bench.statuses) and bench.statuses[-1].number("samples") >= samples
-
-    bench.until(counted, f"{samples} samples")
 
 
 def test_comes_up_active(bench: Bench, peer: Any) -> None:

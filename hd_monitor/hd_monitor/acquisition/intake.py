@@ -44,6 +44,10 @@ class Intake:
         self._blocks: list[Block] = []
         self.newest: dict[Quantity, int] = {}
 
+    def change(self, settings: JointSettings) -> None:
+        """Put another ``input.timeout`` in force."""
+        self._timeline.timeout = round(settings.input.timeout * NANOSECONDS)
+
     def add(self, quantity: Quantity, stamps: IntArray, values: FloatArray) -> None:
         """Add samples with their stamps [ns], shape (N,), and values, shape (N, columns), in the order they came."""
         self._unpack_blocks()

@@ -49,11 +49,15 @@ class Presence:
     """
 
     def __init__(self, settings: JointSettings) -> None:
+        self._heard = {quantity: _Heard() for quantity in settings.sources}
+        self.change(settings)
+
+    def change(self, settings: JointSettings) -> None:
+        """Put other timeouts in force."""
         given = settings.input
         self._timeout = round(given.timeout * NANOSECONDS)
         self._startup_warning = round(given.startup_warning * NANOSECONDS)
         self._startup_timeout = round(given.startup_timeout * NANOSECONDS)
-        self._heard = {quantity: _Heard() for quantity in settings.sources}
 
     @property
     def absent(self) -> tuple[Quantity, ...]:
@@ -64,6 +68,11 @@ class Presence:
         """Count silence from `now` [ns]; None: from the first look, as the clock has not begun."""
         for heard in self._heard.values():
             heard.came = heard.useful = now
+
+    def await_anew(self, quantity: Quantity, now: int | None) -> None:
+        """Expect an input from `now` [ns] on as if nothing of it had come: it is on another topic."""
+        if quantity in self._heard:
+            self._heard[quantity] = _Heard(now, now)
 
     def note(self, quantity: Quantity, came: int, useful: int | None = None) -> None:
         """Note when an input came, and when it was usable [ns]; None: it was not."""

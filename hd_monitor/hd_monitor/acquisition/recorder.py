@@ -76,11 +76,15 @@ class Recorder:
         self._expected_period = 1.0 / settings.input.expected_rate if single else 0.0
         self._span = settings.analysis.period
         self._full_scale = settings.input.clipping_limit
-        self._load = settings.load
+        self.change(settings)
         self._has_sensor = Quantity.TORQUE in settings.sources
         self._counts: dict[str, Any] = {}
         self.torque_source = "unknown"
         self.cut()
+
+    def change(self, settings: JointSettings) -> None:
+        """Put another ``load.torque`` in force."""
+        self._load = settings.load
 
     def cut(self) -> None:
         """Forget the motion and the grid: the next samples have another time base."""

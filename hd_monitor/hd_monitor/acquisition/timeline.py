@@ -41,6 +41,11 @@ class Timeline:
         The inputs that an assessment needs.
     period, timeout : int
         Length of a period, and silence after which the others stop waiting for an input [ns].
+
+    Attributes
+    ----------
+    timeout : int
+        As given; may be changed at any time.
     """
 
     def __init__(
@@ -53,7 +58,7 @@ class Timeline:
         self._buffers = buffers
         self._inputs = [buffers[quantity] for quantity in needed]
         self._period = period
-        self._timeout = timeout
+        self.timeout = timeout
         self._start: int | None = None
         self._epoch = 0
 
@@ -102,7 +107,7 @@ class Timeline:
         if self._start is not None:
             return max(first, self._start)
         waiting = any(buffer.oldest is None for buffer in self._inputs)
-        return None if waiting and newest - oldest < self._timeout else first
+        return None if waiting and newest - oldest < self.timeout else first
 
     def _complete(self, end: int, oldest: int, newest: int) -> bool:
         """Whether there is something before `end` [ns], and nothing more will come."""
@@ -112,14 +117,14 @@ class Timeline:
             (buffer.complete_until is None or buffer.complete_until < end) and not buffer.jumped
             for buffer in self._inputs
         )
-        return not waiting or newest >= end + self._timeout
+        return not waiting or newest >= end + self.timeout
 
     def _pass_jump(self) -> bool:
         """Switch to the new time base once all inputs have jumped, or one has left the others waiting long enough."""
         jumped = [buffer for buffer in self._inputs if buffer.jumped]
         if not jumped:
             return False
-        waited = max(buffer.seconds_after_jump for buffer in jumped) * 1e9 >= self._timeout
+        waited = max(buffer.seconds_after_jump for buffer in jumped) * 1e9 >= self.timeout
         if len(jumped) < len(self._inputs) and not waited:
             return False
         for buffer in jumped:

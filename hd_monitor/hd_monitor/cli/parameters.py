@@ -8,7 +8,7 @@ from itertools import groupby
 
 from ..errors import HdMonitorError
 from ..parameter import Parameter
-from ..settings import NODE_PARAMETERS, PARAMETERS
+from ..settings import CHANGEABLE, NODE_PARAMETERS, PARAMETERS
 from ..settings.table import JOINTS
 from . import extensions
 
@@ -29,9 +29,17 @@ have means the same in both, so that one file can serve both.
 
 MONITOR_HEAD = """
 With one joint the parameters are at the top level. With several (`joints: [shoulder, elbow]`) those at the top level
-are common to all, and each joint may override any of them below its name (`elbow.reducer.serial`). `diagnosis.*` may be
-changed while the node runs (with several joints: below the joint's name); everything else is fixed at the start. A
-parameter file may be shared with other nodes: names outside the groups below are ignored with a warning.
+are common to all, and each joint may override any of them below its name (`elbow.reducer.serial`). A parameter file may
+be shared with other nodes: names outside the groups below are ignored with a warning; a joint's parameter below a name
+that is not in `joints` ends the node.
+
+`ros2 param set` works in every state of the node: at the top level it changes all joints that have no value of their
+own, below a joint's name that joint alone. While the node is inactive, everything but `joints` and `autostart` may be
+set; it takes effect when the node is activated, and a joint whose evidence is no longer valid with it starts anew.
+While the node is active, these take effect at once:
+{changeable}.
+The others are refused: what the node knows of the joint was learnt with them. `load.torque` may not change from or to 0
+either, which decides whether the indexes have a scale.
 """
 
 
@@ -68,8 +76,13 @@ def markdown(tables: Mapping[str, Sequence[Parameter]]) -> str:
     """Write the page ``msgs_doc/parameters.md``."""
     parts = [HEAD]
     for node, parameters in tables.items():
-        parts += [f"## {node}\n{MONITOR_HEAD if node == MONITOR else ''}", *_groups(parameters)]
+        parts += [f"## {node}\n{_monitor_head() if node == MONITOR else ''}", *_groups(parameters)]
     return "\n".join(parts)
+
+
+def _monitor_head() -> str:
+    names = ", ".join(f"`{name}*`" if name.endswith(".") else f"`{name}`" for name in CHANGEABLE)
+    return MONITOR_HEAD.format(changeable=textwrap.fill(names, WIDTH, break_on_hyphens=False))
 
 
 def _groups(parameters: Sequence[Parameter]) -> Iterator[str]:

@@ -54,6 +54,10 @@ class Identifier:
         self._skip = 0.0
         self._passed = 0.0
 
+    def change(self, settings: JointSettings) -> None:
+        """Put other settings in force that leave the evidence valid: ``load.torque`` and the limits."""
+        self._estimator.change(settings)
+
     def add(self, record: Record) -> None:
         """Take the next record."""
         if self._skip > 0.0:

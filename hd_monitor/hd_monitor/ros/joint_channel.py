@@ -7,13 +7,14 @@ from rclpy.qos import QoSProfile
 from std_msgs.msg import Float64MultiArray
 
 from .. import contract
-from ..settings import JointSettings
+from ..errors import ParameterError
+from ..settings import JointSettings, check_change
 from ..sources import Quantity
 from .joint_watch import JointWatch
 from .memory import Memory
 from .messages import rms_message, zoom_message
 from .queue import most_messages, queue_depth
-from .subscriptions import DrainedSubscription
+from .subscriptions import DrainedSubscription, subscribed
 
 
 def queue_depth_of(settings: JointSettings) -> int:
@@ -64,18 +65,39 @@ class JointChannel:
 
     def open(self, motion: DrainedSubscription, now: int) -> None:
         """Subscribe to what is the joint's own, `motion` being all joints'; silence counts from `now` [ns]."""
+        self.watch.wake(now)
+        self.listen(motion, now)
+
+    def change(self, settings: JointSettings) -> bool:
+        """Put other settings in force; return False if that takes a new channel, which has to learn all anew."""
+        try:
+            check_change(self.watch.settings, settings)
+        except ParameterError:
+            return False
+        self.watch.change(settings)
+        return True
+
+    def listen(self, motion: DrainedSubscription, now: int) -> None:
+        """Subscribe as the settings say; what is subscribed in that way already stays."""
         self._motion = motion
         self._warn_of_short_queue()
-        for quantity, source in self.watch.settings.all_sources.items():
-            if quantity is not Quantity.MOTION:
-                self._subscriptions[quantity] = DrainedSubscription(
-                    self._node,
-                    source.name_below(self._below),
-                    source.type,
-                    depth=queue_depth_of(self.watch.settings),
-                    reliability=self.watch.settings.input.reliability,
-                )
-        self.watch.wake(now)
+        settings = self.watch.settings
+        wanted = dict(settings.all_sources)
+        del wanted[Quantity.MOTION]
+        for quantity in self._subscriptions.keys() - wanted.keys():
+            self._subscriptions.pop(quantity).close()
+        for quantity, source in wanted.items():
+            before = self._subscriptions.get(quantity)
+            self._subscriptions[quantity] = subscribed(
+                before,
+                self._node,
+                source.name_below(self._below),
+                source.type,
+                depth=queue_depth_of(settings),
+                reliability=settings.input.reliability,
+            )
+            if self._subscriptions[quantity] is not before:
+                self.watch.await_anew(quantity, now)
 
     def _warn_of_short_queue(self) -> None:
         rate, seconds = self.watch.settings.input.expected_rate, self.watch.settings.input.queue_seconds

@@ -164,10 +164,17 @@ class JointWatch:
         """RMS by speed in the baseline; empty without one."""
         return self._monitor.baseline.rms_curve if self._monitor.baseline else ()
 
-    def change_limits(self, settings: JointSettings) -> None:
-        """Put other ``diagnosis.*`` parameters in force."""
+    def change(self, settings: JointSettings) -> None:
+        """Put other settings in force that leave the evidence valid."""
         self.settings = settings
-        self._monitor.change_limits(settings)
+        self._monitor.change(settings)
+        self._inputs.change(settings)
+        self._presence.change(settings)
+        self.present = replace(self.present, settings=settings)  # its status says the limits
+
+    def await_anew(self, quantity: Quantity, now: int) -> None:
+        """Expect an input from `now` [ns] on as if nothing of it had come: it is on another topic."""
+        self._presence.await_anew(quantity, now or None)
 
     def reset_latch(self) -> None:
         """Release a latched verdict."""

@@ -11,15 +11,14 @@ from std_srvs.srv import Trigger
 from .. import contract
 from ..diagnosis.status import Status
 from ..errors import HdMonitorError
-from ..settings import JointSettings
-from ..sources import JOINT_STATES
+from ..sources import JOINT_STATES, Quantity
 from .joint_channel import JointChannel, queue_depth_of
 from .managed_node import ManagedNode, logged, run
 from .messages import diagnostic_status
 from .parameters import JointParameters
 from .queue import return_memory
 from .status_log import StatusLog
-from .subscriptions import DrainedSubscription
+from .subscriptions import DrainedSubscription, subscribed
 
 NAME = "hd_monitor_node"
 DRAIN_PERIOD = 0.05
@@ -47,12 +46,13 @@ class HdMonitorNode(ManagedNode):
 
     def __init__(self, **options: Any) -> None:
         super().__init__(NAME, **options)
-        self._channels: list[JointChannel] = []
+        self._channels: dict[str, JointChannel] = {}
         self._motion: DrainedSubscription | None = None
+        self._watched = ""
         self._own_timers: list[Any] = []
         self._own_services: list[Any] = []
         self._log = StatusLog(self.get_logger())
-        self._parameters_of_joints = JointParameters(self, self._change_limits)
+        self._parameters_of_joints = JointParameters(self, self._is_active, self._change)
         self._diagnostics = self.create_lifecycle_publisher(DiagnosticArray, contract.DIAGNOSTICS, QoSProfile(depth=10))
         if self.get_parameter("autostart").value:
             self.bring_up()
@@ -62,44 +62,34 @@ class HdMonitorNode(ManagedNode):
     @logged
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Make a monitor for every joint, with its publishers and services."""
-        settings = self._parameters_of_joints.settings
-        several = len(settings) > 1
         try:
-            for joint, own in settings.items():
-                self._channels.append(JointChannel(self, joint, own, several, self._now()))
+            self._follow_parameters()
         except HdMonitorError as error:
             self.dismantle()
             return self.refuse(error)
-        self._offer("~/reset_latch", "reset_latch", self._channels)
-        self._offer("~/reset", "reset", self._channels)
-        self._offer("~/set_baseline", "set_baseline", self._channels)
-        if several:
-            for channel in self._channels:
-                self._offer(f"~/{channel.joint}/reset_latch", "reset_latch", [channel])
-                self._offer(f"~/{channel.joint}/reset", "reset", [channel])
-                self._offer(f"~/{channel.joint}/set_baseline", "set_baseline", [channel])
+        joints = list(self._channels)
+        for action in ("reset_latch", "reset", "set_baseline"):
+            self._offer(f"~/{action}", action, joints)
+            if len(joints) > 1:
+                for joint in joints:
+                    self._offer(f"~/{joint}/{action}", action, [joint])
         return super().on_configure(state)
 
     @logged
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Subscribe, and start looking into the queues."""
-        settings = [channel.watch.settings for channel in self._channels]
-        reliable = all(own.input.reliability == "reliable" for own in settings)
-        self._motion = DrainedSubscription(
-            self,
-            JOINT_STATES.topic,
-            JOINT_STATES.type,
-            depth=max(map(queue_depth_of, settings)),
-            reliability="reliable" if reliable else "best_effort",
-        )
-        for channel in self._channels:
+        try:
+            self._follow_parameters()
+        except HdMonitorError as error:
+            return self.refuse(error)
+        self._motion = self._subscribed_motion()
+        for channel in self._channels.values():
             channel.open(self._motion, self._now())
         self._own_timers = [
             self.create_timer(DRAIN_PERIOD, self._drain, clock=self._steady),
             self.create_timer(STATUS_PERIOD, self._publish_all, clock=self._steady),
         ]
-        watched = ", ".join(f"{c.joint} ({' and '.join([*c.topics, self._motion.topic])})" for c in self._channels)
-        self.get_logger().info(f"watching {watched}")
+        self._tell_topics(self._motion)
         return super().on_activate(state)
 
     def stop_work(self) -> None:
@@ -107,7 +97,7 @@ class HdMonitorNode(ManagedNode):
         for timer in self._own_timers:
             self.destroy_timer(timer)
         self._own_timers = []
-        for channel in self._channels:
+        for channel in self._channels.values():
             channel.close()
         if self._motion is not None:
             self._motion.close()
@@ -118,15 +108,64 @@ class HdMonitorNode(ManagedNode):
         for service in self._own_services:
             self.destroy_service(service)
         self._own_services = []
-        for channel in self._channels:
+        for channel in self._channels.values():
             channel.destroy()
-        self._channels = []
+        self._channels = {}
 
     def destroy_node(self) -> None:
         """Leave; what the ledger does not have yet is written first."""
-        for channel in self._channels:
+        for channel in self._channels.values():
             channel.watch.close()
         super().destroy_node()
+
+    # Settings -------------------------------------------------------------------------------------------------------
+
+    def _follow_parameters(self) -> None:
+        """Have every joint watched as its parameters say; a joint for which they leave nothing valid starts anew."""
+        settings = self._parameters_of_joints.settings
+        for joint, own in settings.items():
+            channel = self._channels.get(joint)
+            if channel is None or not channel.change(own):
+                if channel is not None:
+                    self._channels.pop(joint).destroy()
+                    self.get_logger().info(f"{joint}: starts anew with other parameters")
+                self._channels[joint] = JointChannel(self, joint, own, len(settings) > 1, self._now())
+
+    def _is_active(self) -> bool:
+        return self._motion is not None
+
+    def _change(self) -> None:
+        """Put changed parameters in force at once; while inactive they wait for the activation."""
+        if self._motion is None:
+            return
+        self._drain()
+        self._follow_parameters()
+        before, self._motion = self._motion, self._subscribed_motion()
+        for channel in self._channels.values():
+            if self._motion is not before:
+                channel.watch.await_anew(Quantity.MOTION, self._now())
+            channel.listen(self._motion, self._now())
+        self._tell_topics(self._motion)
+
+    def _subscribed_motion(self) -> DrainedSubscription:
+        settings = [channel.watch.settings for channel in self._channels.values()]
+        reliable = all(own.input.reliability == "reliable" for own in settings)
+        return subscribed(
+            self._motion,
+            self,
+            JOINT_STATES.topic,
+            JOINT_STATES.type,
+            depth=max(map(queue_depth_of, settings)),
+            reliability="reliable" if reliable else "best_effort",
+        )
+
+    def _tell_topics(self, motion: DrainedSubscription) -> None:
+        """Log what is listened to, where that is news."""
+        channels = self._channels.values()
+        watched = ", ".join(f"{c.joint} ({' and '.join([*c.topics, motion.topic])})" for c in channels)
+        if watched != self._watched:
+            self._watched = watched
+            self.get_logger().info(f"watching {watched}")
 
     # Work -----------------------------------------------------------------------------------------------------------
 
@@ -135,16 +174,16 @@ class HdMonitorNode(ManagedNode):
             return
         motion = self._motion.drain()
         now = self._now()
-        for channel in self._channels:
+        for channel in self._channels.values():
             channel.feed(motion, now)
             self._tell_news(channel)
 
     def _publish_all(self) -> None:
         now = self._now()
-        for channel in self._channels:
+        for channel in self._channels.values():
             channel.watch.check(now)
             self._tell_news(channel)
-        statuses = [status for channel in self._channels for status in channel.watch.statuses()]
+        statuses = [status for channel in self._channels.values() for status in channel.watch.statuses()]
         self._publish(statuses)
         self._log.note(statuses, self._steady.now().nanoseconds)
 
@@ -168,17 +207,13 @@ class HdMonitorNode(ManagedNode):
 
     # Requests -------------------------------------------------------------------------------------------------------
 
-    def _change_limits(self, settings: dict[str, JointSettings]) -> None:
-        for channel in self._channels:
-            channel.watch.change_limits(settings[channel.joint])
-
-    def _offer(self, name: str, action: str, channels: list[JointChannel]) -> None:
-        joints = ", ".join(channel.joint for channel in channels)
+    def _offer(self, name: str, action: str, of: list[str]) -> None:
+        joints = ", ".join(of)
 
         def act(request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
             try:
-                for channel in channels:
-                    getattr(channel.watch, action)()
+                for joint in of:
+                    getattr(self._channels[joint].watch, action)()
             except Exception as error:  # a request must not end the node
                 self.get_logger().error(f"{name} failed: {error!r}")
                 response.success, response.message = False, f"{type(error).__name__}: {error}"

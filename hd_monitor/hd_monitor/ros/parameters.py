@@ -9,12 +9,9 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter as RosParameter
 
 from ..errors import ParameterError
-from ..settings import NODE_PARAMETERS, PARAMETERS, JointSettings, set_aside_foreign, split_joints
+from ..settings import NODE_PARAMETERS, PARAMETERS, JointSettings, check_change, set_aside_foreign, split_joints
 from ..settings.table import JOINTS
-from .declaration import answer, declare
-
-CHANGEABLE = "diagnosis."
-"""Prefix of the parameters that may be changed while the node runs; all others take effect at its start only."""
+from .declaration import answer, declare, with_real_numbers
 
 _TOPIC_WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 
@@ -26,13 +23,15 @@ class JointParameters:
     ----------
     node : Node
         Created with ``automatically_declare_parameters_from_overrides=True``, so that misspelt names are noticed.
+    is_active : callable
+        Whether the joints are being watched, so that only what leaves their evidence valid may change.
     changed : callable
-        Called with the new settings of every joint after a change at run time.
+        Called after a change.
 
     Attributes
     ----------
     settings : dict of str to JointSettings
-        In force, by joint.
+        By joint, in force once the node is activated.
 
     Raises
     ------
@@ -40,8 +39,9 @@ class JointParameters:
         If a parameter is unknown, of the wrong type, out of range or impossible beside the others.
     """
 
-    def __init__(self, node: Node, changed: Callable[[dict[str, JointSettings]], None]) -> None:
+    def __init__(self, node: Node, is_active: Callable[[], bool], changed: Callable[[], None]) -> None:
         self._node = node
+        self._is_active = is_active
         self._changed = changed
         given, strangers = set_aside_foreign(self._values())
         for name in strangers:
@@ -59,20 +59,22 @@ class JointParameters:
             value = parameter.check(given.get(parameter.name, parameter.default))
             declare(node, parameter, value, read_only=True)
         below = tuple(f"{joint}." for joint in joints)
-        self._by_joint = len(joints) > 1 or any(name.startswith(below) for name in given)
+        by_joint = len(joints) > 1 or any(name.startswith(below) for name in given)
+        self._overridden = {name for name in given if name.startswith(below)}
+        self._followers: set[str] = set()
         common = split_joints({name: value for name, value in given.items() if not name.startswith(below)})[joints[0]]
-        self._declare("", common, fixed=self._by_joint)
-        if self._by_joint:
+        self._declare("", common)
+        if by_joint:
             for joint, settings in self.settings.items():
-                self._declare(f"{joint}.", settings, fixed=False)
+                self._declare(f"{joint}.", settings)
+        node.add_pre_set_parameters_callback(self._extend)
         node.add_on_set_parameters_callback(self._check)
         node.add_post_set_parameters_callback(self._apply)
 
-    def _declare(self, prefix: str, settings: JointSettings, *, fixed: bool) -> None:
+    def _declare(self, prefix: str, settings: JointSettings) -> None:
         values = dict(settings.values)
         for parameter in PARAMETERS:
-            read_only = fixed or not parameter.name.startswith(CHANGEABLE)
-            declare(self._node, parameter, values[parameter.name], read_only=read_only, below=prefix)
+            declare(self._node, parameter, values[parameter.name], read_only=False, below=prefix)
 
     def _values(self) -> dict[str, Any]:
         return {name: self._node.get_parameter(name).value for name in self._node.list_parameters([], 0).names}
@@ -80,14 +82,35 @@ class JointParameters:
     def _with(self, parameters: Sequence[RosParameter]) -> dict[str, JointSettings]:
         return split_joints(self._values() | {parameter.name: parameter.value for parameter in parameters})
 
+    def _extend(self, parameters: list[RosParameter]) -> list[RosParameter]:
+        """Set a common parameter of every joint that has not been given its own."""
+        parameters = with_real_numbers(self._node, parameters)
+        requested = {parameter.name for parameter in parameters}
+        followers = [
+            RosParameter(name, value=parameter.value)
+            for parameter in parameters
+            for joint in self.settings
+            if self._node.has_parameter(name := f"{joint}.{parameter.name}")
+            and name not in self._overridden | requested
+        ]
+        self._followers = {parameter.name for parameter in followers}
+        return [*parameters, *followers]
+
     def _check(self, parameters: Sequence[RosParameter]) -> SetParametersResult:
-        return answer(lambda: self._with(parameters))
+        def check() -> None:
+            settings = self._with(parameters)
+            if self._is_active():
+                for joint, before in self.settings.items():
+                    check_change(before, settings[joint])
+
+        return answer(check)
 
     def _apply(self, parameters: Sequence[RosParameter]) -> None:
+        self._overridden |= {parameter.name for parameter in parameters} - self._followers
         settings = self._with(parameters)
         if settings != self.settings:
             self.settings = settings
-            self._changed(settings)
+            self._changed()
 
 
 def check_names(joints: Sequence[str]) -> None:

@@ -53,6 +53,7 @@ class DrainedSubscription:
 
     def __init__(self, node: Node, topic: str, kind: str, *, depth: int, reliability: str) -> None:
         self._node = node
+        self._request = (topic, kind, depth, reliability)
         package, _, name = kind.partition("/")
         self._type = getattr(import_module(f"{package}.msg"), name)
         self._depth = depth
@@ -78,6 +79,10 @@ class DrainedSubscription:
                 messages.append(taken[0])
                 size += len(taken[0])
         return messages
+
+    def matches(self, topic: str, kind: str, *, depth: int, reliability: str) -> bool:
+        """Whether it is what these arguments would create."""
+        return self._request == (topic, kind, depth, reliability)
 
     def close(self) -> None:
         """Leave the topic."""
@@ -118,6 +123,17 @@ class DrainedSubscription:
             if alike and self._node.count_publishers(topic):
                 return f", but {topic} exists: is the namespace or a remapping wrong?"
         return ""
+
+
+def subscribed(
+    before: DrainedSubscription | None, node: Node, topic: str, kind: str, *, depth: int, reliability: str
+) -> DrainedSubscription:
+    """Return a subscription of this kind: the one there is `before`, if it is one, else a new one in its place."""
+    if before is not None:
+        if before.matches(topic, kind, depth=depth, reliability=reliability):
+            return before
+        before.close()
+    return DrainedSubscription(node, topic, kind, depth=depth, reliability=reliability)
 
 
 def _name(endpoint: Any) -> str:

@@ -27,11 +27,16 @@ class InputSettings:
     Raises
     ------
     ParameterError
-        If the topic is not a name that ROS allows.
+        If a topic is not a name that ROS allows.
     """
 
     source: str = choice(
         "block", INPUT_SOURCES, "the vibration signal; joint_effort and joint_velocity need joint_states only"
+    )
+    topic: str = plain(
+        "",
+        "topic of the vibration; relative ones are below the joint's name with several joints; empty: the name that "
+        "belongs to input.source (torsional_acceleration/block, torsional_acceleration or imu/data_raw)",
     )
     axis: str = choice("y", AXES, "axis of an IMU's linear acceleration that points along the motion (tangential)")
     sensor_radius: float = number(
@@ -117,6 +122,7 @@ class InputSettings:
 
     def __post_init__(self) -> None:
         """Refuse a topic that cannot be subscribed to."""
+        _check_topic("input.topic", self.topic)
         _check_topic("input.temperature_topic", self.temperature_topic)
 
 

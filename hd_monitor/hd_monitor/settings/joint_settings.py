@@ -52,6 +52,11 @@ class JointSettings:
         for name, reason in INPUT_SOURCES[str(values["input.source"])].needs:
             if not values[name]:
                 raise ParameterError(f"{name} = 0 with input.source = {values['input.source']!r}: {reason}")
+        if values["input.topic"] and INPUT_SOURCES[str(values["input.source"])] is JOINT_STATES:
+            raise ParameterError(
+                f"input.topic = {values['input.topic']!r} with input.source = {values['input.source']!r}: the "
+                "vibration is in joint_states then; leave input.topic empty, and remap joint_states if need be"
+            )
         return cls(
             values=tuple(values.items()),
             reducer=fill_group(values, "reducer", Reducer),
@@ -79,7 +84,7 @@ class JointSettings:
     @property
     def sources(self) -> dict[Quantity, Source]:
         """The inputs that the joint needs."""
-        needed = [JOINT_STATES, self.vibration]
+        needed = [JOINT_STATES, replace(self.vibration, topic=self.input.topic or self.vibration.topic)]
         torque = LOAD_SOURCES[self.load.source]
         if torque is not None and not self.sensorless:
             needed.append(replace(torque, topic=self.load.topic or torque.topic))

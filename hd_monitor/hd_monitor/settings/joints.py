@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ..errors import ParameterError
+from ..errors import ParameterError, did_you_mean, listed
 from ..parameter import flatten
 from .joint_settings import JointSettings
 from .table import NODE_PARAMETERS, PARAMETERS, ROS_PARAMETERS
@@ -23,14 +23,19 @@ _OWN_GROUPS = ("reducer", "dynamics", "input", "analysis", "diagnosis")
 def set_aside_foreign(given: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:
     """Split a parameter file that is shared with other nodes: (the monitor's parameters, names of the others').
 
-    What stands below a joint or in a group that is the monitor's alone is never foreign, so that a misspelt name is
-    still refused by :func:`split_joints`.
+    What stands below a joint or in a group that is the monitor's alone is never foreign, and neither is a joint's
+    parameter below another name, so that a misspelt name is still refused by :func:`split_joints`.
     """
     flat = flatten(given)
     joints = flat.get("joints") or ["joint"]
     # Whatever else stands there is refused by `split_joints`.
     own = tuple(f"{group}." for group in (*_OWN_GROUPS, *(joints if isinstance(joints, (list, tuple)) else [joints])))
-    known = {name for name in flat if name in {"joints", *_OF_JOINTS} or _is_of_the_node(name) or name.startswith(own)}
+    mine = {"joints", *_OF_JOINTS}
+    known = {
+        name
+        for name in flat
+        if name in mine or _is_of_the_node(name) or name.startswith(own) or name.partition(".")[2] in _OF_JOINTS
+    }
     strangers = sorted(flat.keys() - known)
     return {name: value for name, value in flat.items() if name not in strangers}, strangers
 
@@ -69,8 +74,15 @@ def split_joints(given: Mapping[str, Any]) -> dict[str, JointSettings]:
         rest = {name: value for name, value in rest.items() if not name.startswith(prefix)}
         settings[joint] = JointSettings.from_mapping(common | own)
     if rest:
-        raise ParameterError(
-            f"there is no parameter {' or '.join(sorted(rest))}, neither of the node nor of a joint "
-            f"({', '.join(joints)}); check the spelling"
-        )
+        raise ParameterError(_unknown(min(rest), joints))
     return settings
+
+
+def _unknown(name: str, joints: Sequence[str]) -> str:
+    """Say what is wrong with a name that belongs to no parameter and no joint."""
+    section, _, parameter = name.partition(".")
+    if parameter in _OF_JOINTS:
+        hint = did_you_mean(section, joints) or "; add it to joints, or check the spelling"
+        return f"{name}: there is no joint {section!r}, only {listed(joints)}{hint}"
+    hint = did_you_mean(name, _OF_JOINTS) or "; check the spelling"
+    return f"there is no parameter {name}, neither of the node nor of a joint ({listed(joints)}){hint}"

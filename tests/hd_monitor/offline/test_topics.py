@@ -113,6 +113,13 @@ def test_missing_topics_are_reported_with_others(topics: dict[str, str], empty: 
     assert "\n" not in str(caught.value)
 
 
+def test_the_vibration_is_found_by_the_name_that_the_parameters_give() -> None:
+    settings = JointSettings.from_mapping({"input.source": "imu", "input.topic": "wrist_imu"})
+    vibration = {Quantity.VIBRATION: settings.sources[Quantity.VIBRATION]}
+    find = finder(dict.fromkeys(["/imu/data_raw", "/arm/wrist_imu"], "sensor_msgs/msg/Imu"))
+    assert find.joint_topics(vibration) == {Quantity.VIBRATION: "/arm/wrist_imu"}
+
+
 @pytest.mark.parametrize(
     ("given", "joint", "topics", "expected"),
     [

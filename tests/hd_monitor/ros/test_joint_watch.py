@@ -217,11 +217,30 @@ def test_several_publishers_are_named_by_the_inputs_status() -> None:
     assert "publishers" not in inputs(watch).message
 
 
+def test_other_timeouts_count_for_what_is_missing_already() -> None:
+    watch = watch_of(input__startup_timeout=60.0)
+    watch.check(START + 40 * SECOND)
+    assert inputs(watch).value("fault_code") == "HD_INPUT_WAITING"
+    watch.change(JointSettings.from_mapping({"input.startup_timeout": 40.0}))
+    watch.check(START + 41 * SECOND)
+    assert inputs(watch).value("fault_code") == "HD_INPUT_LOST"
+
+
+def test_an_input_on_another_topic_is_awaited_as_if_nothing_of_it_had_come() -> None:
+    watch = watch_of(input__source="accel_stamped")
+    watch.feed(inputs_of(accelerations(100, 2.5), joint_states(100, 2.5)), START + 3 * SECOND)
+    watch.await_anew(Quantity.VIBRATION, START + 4 * SECOND)
+    watch.check(START + 4 * SECOND)
+    watch.check(START + 5 * SECOND)
+    assert inputs(watch).message == "No vibration signal yet: because of the vibration"
+
+
 def test_new_limits_keep_the_evidence() -> None:
     watch = watch_of(input__source="accel_stamped")
     watch.feed(inputs_of(accelerations(100, 2.5), joint_states(100, 2.5)), START + 3 * SECOND)
     samples = reducer(watch).value("samples")
-    watch.change_limits(JointSettings.from_mapping({"input.source": "accel_stamped", "diagnosis.warn_index": 0.07}))
+    watch.change(JointSettings.from_mapping({"input.source": "accel_stamped", "diagnosis.warn_index": 0.07}))
+    assert reducer(watch).value("warn limit (%)") == "7.000"
     watch.feed(inputs_of(accelerations(102.5, 1), joint_states(102.5, 1)), START + 4 * SECOND)
     assert reducer(watch).value("warn limit (%)") == "7.000"
     assert float(reducer(watch).value("samples")) > float(samples)

@@ -42,7 +42,7 @@ def test_an_error_in_one_joint_leaves_node_and_other_joint_alive(make_node: Call
 
     arrays = peer.collect(DiagnosticArray, "/diagnostics", match=False)
     node = make_node(joints=["bad", "good"])
-    broken = next(channel for channel in node._channels if channel.joint == "bad")
+    broken = node._channels["bad"]
     broken.watch._monitor.advance = fail
     peer.until(
         lambda: any(values["fault_code"] == "HD_INTERNAL_ERROR" for values in statuses_of(arrays, "bad")),
@@ -60,7 +60,7 @@ def test_a_failing_request_is_answered(make_node: Callable[..., Any], peer: Any)
         raise RuntimeError("made for the test")
 
     node = make_node()
-    node._channels[0].watch.reset = fail
+    node._channels["joint"].watch.reset = fail
     response = peer.call(Trigger, "hd_monitor_node/reset", Trigger.Request())
     assert not response.success
     assert response.message == "RuntimeError: made for the test"

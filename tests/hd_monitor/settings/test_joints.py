@@ -52,6 +52,22 @@ def test_a_misspelt_name_is_refused():
         split_joints({"joints": ["elbow"], "elbwo": {"reducer": {"serial": "E"}}})
 
 
+@pytest.mark.parametrize(
+    ("name", "says"),
+    [
+        ("elbwo.reducer.serial", r"there is no joint 'elbwo', only elbow, wrist; did you mean elbow\?"),
+        ("gripper.load.torque", "there is no joint 'gripper', only elbow, wrist; add it to joints"),
+        ("elbow.reducer.seriel", r"reducer\.seriel is not a parameter of a joint; did you mean reducer\.serial\?"),
+        ("reducer.seriel", r"there is no parameter reducer\.seriel.*; did you mean reducer\.serial\?"),
+    ],
+)
+def test_a_misspelt_joint_or_parameter_is_never_foreign_and_what_it_resembles_is_named(name: str, says: str) -> None:
+    mine, foreign = set_aside_foreign({"joints": ["elbow", "wrist"], name: "1.0"})
+    assert not foreign
+    with pytest.raises(ParameterError, match=says):
+        split_joints(mine)
+
+
 def test_a_misspelt_name_below_a_joint_is_refused():
     with pytest.raises(ParameterError, match=r"reducer\.seriel"):
         split_joints({"joints": ["elbow"], "elbow": {"reducer": {"seriel": "E"}}})

@@ -97,6 +97,11 @@ class SensorlessIdentifier:
         self._stale = bool(self._closed)
         self._forget()
 
+    def change(self, settings: JointSettings) -> None:
+        """Put other limits in force."""
+        self._settings = settings
+        self._stale = True
+
     @property
     def directions(self) -> tuple[DirectionEvidence, ...]:
         """The first pair direction by direction, as of the last estimate."""

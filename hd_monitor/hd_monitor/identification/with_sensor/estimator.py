@@ -52,6 +52,10 @@ class Estimator:
     def __init__(self, settings: JointSettings) -> None:
         self._context = Context.of(settings)
 
+    def change(self, settings: JointSettings) -> None:
+        """Put another ``load.torque`` in force for the segments to come, and other limits."""
+        self._context = replace(self._context, settings=settings)
+
     def initial(self) -> State:
         """Return the state before any data."""
         return State.initial(self._context.unknowns)
