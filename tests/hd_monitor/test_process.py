@@ -71,6 +71,25 @@ print(resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before)
     assert int(output_of(script)) < pages_of_a_round
 
 
+@pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="another C library has another allocator")
+def test_memory_that_nothing_needs_goes_back_although_what_came_later_stays() -> None:
+    script = """
+from hd_monitor.process import set_up_process, trim_memory
+set_up_process()
+import numpy as np
+def resident():  # MB
+    lines = dict(line.split(":", 1) for line in open("/proc/self/status"))
+    return int(lines["VmRSS"].split()[0]) / 1024
+large = [np.ones(5_000) for _ in range(1_000)]
+later = np.ones(5_000)
+del large
+before = resident()
+trim_memory()
+print(before - resident())
+"""
+    assert float(output_of(script)) > 30.0  # of 40 MB
+
+
 INTERRUPTED_IMPORT = """
 import os, signal, time
 from hd_monitor.process import guard

@@ -11,6 +11,7 @@ from std_srvs.srv import Trigger
 from .. import contract
 from ..diagnosis.status import Status
 from ..errors import HdMonitorError
+from ..process import trim_memory
 from ..sources import JOINT_STATES, Quantity
 from .joint_channel import JointChannel, queue_depth_of
 from .managed_node import ManagedNode, logged, run
@@ -25,6 +26,8 @@ DRAIN_PERIOD = 0.05
 """Seconds between two looks into the queues: the largest delay of a verdict."""
 STATUS_PERIOD = 1.0
 """Seconds between two statuses (REP-107)."""
+TRIM_PERIOD = 10.0
+"""Seconds after which memory that nothing needs any more goes back to the system; it takes a millisecond."""
 
 
 class HdMonitorNode(ManagedNode):
@@ -88,6 +91,7 @@ class HdMonitorNode(ManagedNode):
         self._own_timers = [
             self.create_timer(DRAIN_PERIOD, self._drain, clock=self._steady),
             self.create_timer(STATUS_PERIOD, self._publish_all, clock=self._steady),
+            self.create_timer(TRIM_PERIOD, trim_memory, clock=self._steady),
         ]
         self._tell_topics(self._motion)
         return super().on_activate(state)
