@@ -3,6 +3,7 @@
 import sys
 from collections.abc import Callable
 
+from hd_monitor.offline.parameters import check_files
 from hd_monitor.process import guard, set_up_process
 
 
@@ -11,6 +12,7 @@ def main(args: list[str] | None = None) -> int:
     set_up_process()
 
     def load() -> Callable[[], int]:
+        check_files(sys.argv if args is None else args, "--params-file")
         from .node import main as run  # imports numpy
 
         return lambda: run(args)

@@ -9,6 +9,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING
 
 from ..errors import HdMonitorError
+from ..offline.parameters import check_files
 from ..process import STATUSES, guard, set_up_process
 from . import extensions
 
@@ -53,6 +54,8 @@ def _parsed(words: Sequence[str]) -> Callable[[], int]:
     origins = {name: f"from the package {entry.module.partition('.')[0]}" for name, entry in added.items()}
     texts = {**origins, **SIMULATOR_COMMANDS, **COMMANDS}
     chosen = next((word for word in words if word in texts), None)
+    if chosen in COMMANDS:
+        check_files(words, "--params")
     for name, text in texts.items():
         subparser = subparsers.add_parser(name, help=text, description=text)
         if name == chosen:

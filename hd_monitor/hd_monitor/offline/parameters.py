@@ -102,18 +102,36 @@ def load_parameters(path: Path, node: str | None = None) -> dict[str, Any]:
     ParameterError
         If the file cannot be read, is not such YAML, or does not say whose parameters are meant.
     """
-    content = read_yaml(path, _PlainLoader)
-    if content is None:
-        return {}
-    if not isinstance(content, Mapping):
-        raise ParameterError(f"{path} holds {reprlib.repr(content)} where parameters belong; see config/ for examples")
-    sections = list(_sections(content, ""))
+    content, sections = _read(path, _PlainLoader)
     if not sections:
         return flatten({str(name): value for name, value in content.items()})
     values: dict[str, Any] = {}
     for _, section in _chosen(sections, node, path):
         values.update(flatten(section))
     return values
+
+
+def check_files(words: Sequence[str], option: str) -> None:
+    """Refuse parameter files that hold no parameters, named after an option, before the imports that they set going.
+
+    Raises
+    ------
+    ParameterError
+        If a file cannot be read, is not YAML, or holds something else where parameters belong.
+    """
+    for before, word in itertools.pairwise(words):
+        if before == option:
+            _read(Path(word), _Loader)
+
+
+def _read(path: Path, loader: type[_Loader]) -> tuple[Mapping[Any, Any], list[tuple[str, Mapping[str, Any]]]]:
+    """Return what a parameter file holds, and its sections."""
+    content = read_yaml(path, loader)
+    if content is None:
+        return {}, []
+    if not isinstance(content, Mapping):
+        raise ParameterError(f"{path} holds {reprlib.repr(content)} where parameters belong; see config/ for examples")
+    return content, list(_sections(content, ""))
 
 
 def parse_override(text: str) -> tuple[str, Any]:

@@ -25,10 +25,10 @@ def test_wrong_words_are_status_2(words: list[str], capsys: pytest.CaptureFixtur
     assert "usage: hd-monitor" in capsys.readouterr().err
 
 
-def run_without(package: str, *words: str) -> subprocess.CompletedProcess[str]:
-    """Run the command in an interpreter in which `package` cannot be imported."""
+def run_without(package: str, *words: str, module: str = "hd_monitor.cli.main") -> subprocess.CompletedProcess[str]:
+    """Run an executable in an interpreter in which `package` cannot be imported."""
     block = f"import sys; sys.modules[{package!r}] = None"
-    code = f"{block}; from hd_monitor.cli.main import main; sys.exit(main(sys.argv[1:]))"
+    code = f"{block}; from {module} import main; sys.exit(main(sys.argv[1:]))"
     return subprocess.run([sys.executable, "-c", code, *words], capture_output=True, text=True, timeout=60, check=False)
 
 
@@ -49,6 +49,37 @@ def test_what_is_missing_is_one_clear_line(package: str, words: tuple[str, ...],
     assert advice in done.stderr
     assert len(done.stderr.strip().splitlines()) == 1
     assert not done.stdout
+
+
+@pytest.mark.parametrize(
+    ("module", "words"),
+    [
+        ("hd_monitor.cli.main", ("replay", "bag", "--params")),
+        ("hd_monitor.cli.main", ("identify", "bag", "--params")),
+        ("hd_monitor.ros.__main__", ("--ros-args", "--params-file")),
+        ("hd_sim_node.__main__", ("--ros-args", "--params-file")),
+    ],
+    ids=["replay", "identify", "monitor", "rig"],
+)
+@pytest.mark.parametrize(
+    ("text", "cause"),
+    [
+        ("/**: {ros__parameters: hello}", "ros__parameters of /** is 'hello'"),
+        ("5", "holds 5 where parameters belong"),
+        ("[1, 2]", "holds [1, 2] where parameters belong"),
+        ("/**: &a {ros__parameters: *a}", "an alias repeats itself"),
+        ("[" * 5000, "nested too deeply"),
+    ],
+    ids=["word", "number", "list", "alias", "brackets"],
+)
+def test_a_file_without_parameters_is_refused_before_numpy_is_imported(
+    module: str, words: tuple[str, ...], text: str, cause: str, tmp_path: Path
+) -> None:
+    (tmp_path / "parameters.yaml").write_text(text)
+    done = run_without("numpy", *words, str(tmp_path / "parameters.yaml"), module=module)
+    assert done.returncode == 2
+    (line,) = done.stderr.splitlines()
+    assert cause in line
 
 
 @pytest.mark.parametrize("words", [["demo"], ["demo", "--help"], ["gallery"], ["parameters", "--node", "sim"]])
