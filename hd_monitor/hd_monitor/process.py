@@ -145,4 +145,7 @@ def _missing(error: ModuleNotFoundError) -> str:
             "in the checkout"
         )
     extra = "parquet" if name == "pyarrow" else "offline"
-    return f"needs the Python package {name!r}, which is not installed: run pip install '.[{extra}]' in the checkout"
+    return (
+        f"needs the Python package {name!r}, which is not installed: run pip install '.[{extra}]' in the checkout; "
+        "with colcon, or where pip calls the environment externally managed, see the README, On a robot"
+    )
