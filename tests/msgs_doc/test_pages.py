@@ -84,7 +84,7 @@ def test_shares_are_not_called_indexes() -> None:
     shares = dict(status_of(relative(everything_known()), "joint").values)
     assert float(shares["flexspline share (%)"]) == pytest.approx(99.944, abs=1e-3)
     assert float(shares["circular spline share (%)"]) == pytest.approx(3.331, abs=1e-3)
-    assert float(shares["flexspline share std (%)"]) == pytest.approx(0.333, abs=1e-3)
+    assert float(shares["flexspline share std (%)"]) == pytest.approx(0.33, abs=1e-3)
 
 
 @pytest.mark.parametrize("write", [status_of, input_status_of])

@@ -6,7 +6,7 @@ from ..limitation import Limitation, LimitationCode
 
 _BOTH_LINES = "{order:g} and {next_order:g} cycles per output revolution"
 _BOTH_DIRECTIONS = "; ".join(
-    f"{{{d}}}: {{{d}_line:.3g}} ± {{{d}_line_std:.1g}} and {{{d}_next_line:.3g}} ± {{{d}_next_line_std:.1g}}"
+    f"{{{d}}}: {{{d}_line:.3g}} ± {{{d}_line_std:.2g}} and {{{d}_next_line:.3g}} ± {{{d}_next_line_std:.2g}}"
     for d in ("first", "second")
 )
 _CORRECT_TEETH = (
@@ -16,10 +16,10 @@ _CORRECT_TEETH = (
 
 SENTENCES: Mapping[LimitationCode, str] = {
     LimitationCode.NATURAL_FREQUENCY_CORRECTED: (
-        "the vibration fits a natural frequency of {fitted_hz:.1f} Hz, not the {given_hz:g} Hz given: correct "
+        "the vibration fits a natural frequency of {fitted_hz:.4g} Hz, not the {given_hz:g} Hz given: correct "
         "dynamics.natural_frequency"
     ),
-    LimitationCode.DAMPING_CORRECTED: ("the vibration fits a damping ratio of {fitted:.3f}, not the {given:g} given"),
+    LimitationCode.DAMPING_CORRECTED: ("the vibration fits a damping ratio of {fitted:.2g}, not the {given:g} given"),
     LimitationCode.MOTION_STAMPS_LAG: (
         "the stamps of the joint states lag those of the vibration by {delay_ms:.1f} ms, which is compensated"
     ),
@@ -69,11 +69,11 @@ SENTENCES: Mapping[LimitationCode, str] = {
         "motion more or less: stamp both when they are measured, by one clock"
     ),
     LimitationCode.VIBRATION_CLOCK_RATE: (
-        "The clock of the vibration's stamps is about {percent:+.1f} % wrong against that of the joint states: stamp "
+        "The clock of the vibration's stamps is about {percent:+.2g} % wrong against that of the joint states: stamp "
         "samples when they are measured, instead of counting them at a nominal rate"
     ),
     LimitationCode.MOTION_JITTER: (
-        "The stamps of the joint states jitter by {jitter_ms:.1f} ms, in which the lines turn by {turn_deg:.0f}°: "
+        "The stamps of the joint states jitter by {jitter_ms:.3g} ms, in which the lines turn by {turn_deg:.0f}°: "
         "stamp them when they are measured"
     ),
     LimitationCode.POSITION_STEPS: (
@@ -81,7 +81,7 @@ SENTENCES: Mapping[LimitationCode, str] = {
         "{turn_deg:.0f}°: publish them as finely as the encoder reads"
     ),
     LimitationCode.POSITION_JUMPS: (
-        "The positions in joint_states jump by up to {jump_deg:.0f}° from message to message, which their velocities "
+        "The positions in joint_states jump by up to {jump_deg:.3g}° from message to message, which their velocities "
         "do not explain: check the encoder and the driver"
     ),
     LimitationCode.VIBRATION_STEPS: (
@@ -105,7 +105,7 @@ SENTENCES: Mapping[LimitationCode, str] = {
         "the vibration needs: filter them, or set load.source to parameter"
     ),
     LimitationCode.VELOCITY_ZERO: (
-        "The velocities in joint_states are zero while the positions move by {moved_deg:.1f}°: have the driver publish "
+        "The velocities in joint_states are zero while the positions move by {moved_deg:.3g}°: have the driver publish "
         "velocities, or leave the field empty so that they are derived from the positions"
     ),
     LimitationCode.POSITION_STILL: (
@@ -165,7 +165,7 @@ SENTENCES: Mapping[LimitationCode, str] = {
         "the model explains the lines only in part, so the uncertainties are widened {factor:.1f} times"
     ),
     LimitationCode.OTHER_PART: (
-        "a torque of {torque_nm:.3g} ± {std_nm:.1g} N·m at {order:g} cycles per output revolution points to the {part}"
+        "a torque of {torque_nm:.3g} ± {std_nm:.2g} N·m at {order:g} cycles per output revolution points to the {part}"
     ),
     LimitationCode.SIGNAL_MISSING: (
         "The joint states carry no {field}: set input.source to {other}, or have the driver publish it"

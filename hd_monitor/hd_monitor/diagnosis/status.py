@@ -7,9 +7,13 @@ from ..assessment import Assessment
 from ..identification.result import Identification
 from ..reducer import LinePair
 from .something_else import describe_all_else
+from .uncertain import decimals, significant
 
 LONGEST_MESSAGE = 128
 """Characters of a string that ``ros2 topic echo`` shows before it truncates."""
+
+_DIGITS = 3
+"""Decimals of a number, unless it says otherwise."""
 
 _NOTHING = Identification.none((), relative=False)
 """Stands in as long as nothing is identified."""
@@ -76,7 +80,7 @@ def status_of(assessment: Assessment, joint: str) -> Status:
         ("something else", describe_all_else(found.something_else)),
         ("fit", found.fit_status.value if found.fit_status else "none"),
         ("natural frequency (Hz)", _number(found.natural_frequency, 2)),
-        ("natural frequency std (Hz)", _number(found.natural_frequency_std, 2)),
+        ("natural frequency std (Hz)", _std(found.natural_frequency_std)),
         ("damping ratio", _number(found.damping_ratio, 4)),
         ("load fluctuation (N*m)", _number(found.load_fluctuation)),
         ("unstable from (rpm)", _number(found.critical_speed, 0)),
@@ -154,12 +158,19 @@ def _errors(found: Identification) -> list[tuple[str, str | None]]:
 def _pairs(key: str, values: LinePair, stds: LinePair) -> list[tuple[str, str | None]]:
     """Write a value of each spline and its standard deviation; the key has a place for the latter's name."""
     return [
-        (f"{part.replace('_', ' ')} {key % word}", _number(getattr(pair, part)))
+        (f"{part.replace('_', ' ')} {key % word}", written)
         for part in ("flexspline", "circular_spline")
-        for word, pair in (("", values), (" std", stds))
+        for word, written in (
+            ("", _number(getattr(values, part), max(_DIGITS, decimals(getattr(stds, part))))),
+            (" std", _std(getattr(stds, part))),
+        )
     ]
 
 
-def _number(value: float, digits: int = 3) -> str | None:
+def _std(value: float) -> str | None:
+    return significant(value) if math.isfinite(value) else None
+
+
+def _number(value: float, digits: int = _DIGITS) -> str | None:
     """Write a number; None leaves an unknown one out, so that a key never holds a word in its place."""
     return f"{value:.{digits}f}" if math.isfinite(value) else None

@@ -6,6 +6,7 @@ from ..identification.result import VAGUE, Identification
 from ..settings import DiagnosisSettings
 from .limitations import describe_limitation
 from .probability import Probabilities
+from .uncertain import with_std
 from .verdict import Cause, Component, Level
 
 _ALIKE = -0.8
@@ -22,15 +23,15 @@ def _percent(value: float) -> str:
     return f"{100.0 * value:.1f} %"
 
 
-def _with_std(value: float, std: float) -> str:
-    return f"{_percent(value)} ± {_percent(max(std, 1e-3))}"
+def _percent_with_std(value: float, std: float) -> str:
+    return f"{with_std(100.0 * value, 100.0 * std)} %"
 
 
 def _indexes(evidence: Identification) -> str:
     index, std = evidence.index, evidence.index_std
     return (
-        f"flexspline index {_with_std(index.flexspline, std.flexspline)}, "
-        f"circular spline index {_with_std(index.circular_spline, std.circular_spline)}"
+        f"flexspline index {_percent_with_std(index.flexspline, std.flexspline)}, "
+        f"circular spline index {_percent_with_std(index.circular_spline, std.circular_spline)}"
     )
 
 
@@ -45,7 +46,7 @@ def _errors(evidence: Identification) -> str:
 
 
 def _arcmin(value: float, std: float) -> str:
-    return f"{value:.2f}' ± {max(std, 0.01):.2f}'"
+    return f"{with_std(value, std)}'"
 
 
 def _readings(cause: Cause, level: Level, evidence: Identification, limits: DiagnosisSettings) -> str:
@@ -139,7 +140,7 @@ def describe_doubtful_limit(evidence: Identification, limits: DiagnosisSettings,
         )
     factor = (std / max(abs(index - limit), 0.1 * limit)) ** 2
     return _with_doubts(
-        f"The larger index, {_with_std(index, std)}, is close to the limit of {_percent(limit)}; "
+        f"The larger index, {_percent_with_std(index, std)}, is close to the limit of {_percent(limit)}; "
         f"about {max(2, math.ceil(4.0 * factor))} times as much motion would decide",
         evidence,
     )

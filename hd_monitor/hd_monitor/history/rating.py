@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from scipy.stats import norm
 
+from ..diagnosis.uncertain import with_std
 from ..diagnosis.verdict import Cause, Component, FaultCode, Level, Verdict
 from ..identification.result import Identification
 from ..limitation import LimitationCode
@@ -69,7 +70,9 @@ def rated(
     growth = _growth(found, baseline)
     if growth is None:
         return verdict
-    told = ", ".join(f"{_NAMES[part]} {100 * size:+.0f} ± {100 * std:.0f} %" for part, (size, std) in growth.items())
+    told = ", ".join(
+        f"{_NAMES[part]} {with_std(100 * size, 100 * std, sign='+')} %" for part, (size, std) in growth.items()
+    )
     told += f" against the baseline, warn limit {100 * limits.warn_growth:g} %"
     surely = float(norm.isf(CHANCE))
     grown = {part: size for part, (size, std) in growth.items() if size >= limits.warn_growth and size > surely * std}

@@ -6,6 +6,7 @@ from dataclasses import asdict
 from typing import Any
 
 from ..diagnosis.something_else import describe_something_else
+from ..diagnosis.uncertain import with_std
 from ..diagnosis.verdict import Level
 from .result import JointResult
 
@@ -31,15 +32,14 @@ def faults_in_words(counters: Mapping[str, Any]) -> str:
 
 
 def percent_with_std(value: float, std: float) -> str:
-    """Write a fraction and its standard deviation in per cent, to the hundredth that still means something.
+    """Write a fraction and its standard deviation in per cent.
 
     Examples
     --------
-    >>> percent_with_std(0.10312, 0.00123), percent_with_std(0.0149, 0.00002)
-    ('10.31 ± 0.12 %', '1.49 ± <0.01 %')
+    >>> percent_with_std(0.10312, 0.00123)
+    '10.31 ± 0.12 %'
     """
-    shown = f"{100.0 * std:.2f}" if 100.0 * std >= 0.005 else "<0.01"
-    return f"{100.0 * value:.2f} ± {shown} %"
+    return f"{with_std(100.0 * value, 100.0 * std)} %"
 
 
 def summarise(result: JointResult) -> str:

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TextIO
 
+from hd_monitor.diagnosis.uncertain import with_std
 from hd_monitor.diagnosis.verdict import Level
 
 _COLOURS = {Level.OK: "\x1b[32m", Level.WARN: "\x1b[33m", Level.ERROR: "\x1b[31m"}
@@ -41,7 +42,7 @@ class View:
         value, std = (self.number(f"{spline} {self.reading}{word} (%)") for word in ("", " std"))
         if value is None or std is None:
             return "unknown"
-        return f"{value:.2f} ± {std:.2f} %" if std >= 0.005 else f"{value:.2f} ± <0.01 %"
+        return f"{with_std(value, std)} %"
 
 
 class Screen:

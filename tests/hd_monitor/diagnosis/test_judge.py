@@ -45,7 +45,7 @@ def settled(judge: Judge, found: Identification | None, otherwise: Verdict = WAI
 def test_clear_evidence_is_named(cs: float, fs: float, component: Component, level: Level, code: FaultCode) -> None:
     verdict = settled(judge_of(), evidence(cs, fs))
     assert (verdict.component, verdict.level, verdict.fault_code) == (component, level, code)
-    assert f"{100 * fs:.1f} %" in verdict.reason
+    assert f"flexspline index {100 * fs:.2f} ± 0." in verdict.reason
 
 
 @pytest.mark.parametrize(
@@ -207,7 +207,7 @@ def test_while_a_verdict_is_held_its_words_follow_the_evidence() -> None:
     settled(judge, evidence(0.01, 0.02))
     held = judge.judge(evidence(0.01, 0.10), WAITING)
     assert (held.component, held.level) == (Component.NONE, Level.OK)
-    assert "10.0 %" in held.reason
+    assert "flexspline index 10.00 ± 0." in held.reason
     assert held.reason.startswith("To be confirmed (1 of 2 verdicts): The flexspline is defective")
 
 

@@ -60,8 +60,8 @@ def test_the_growth_of_the_lines_gives_part_and_level(cs, fs, component, level, 
 def test_the_reason_says_how_much_and_how_surely():
     verdict = rated(NAMED, found(2.0, 1.5), BASE, LIMITS)
     assert verdict.reason == (
-        "The flexspline's line has grown (circular spline +0 ± 2 %, flexspline +50 ± 4 % against the baseline, warn "
-        "limit 30 %)"
+        "The flexspline's line has grown (circular spline +0.0 ± 2.0 %, flexspline +50.0 ± 4.1 % against the baseline, "
+        "warn limit 30 %)"
     )
     assert "Neither spline's line has grown" in rated(NAMED, found(), BASE, LIMITS).reason
 

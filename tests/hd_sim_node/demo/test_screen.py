@@ -41,7 +41,7 @@ def test_plain_lines_come_on_news_and_every_tenth() -> None:
     assert lines[0].startswith("  0%   850 rpm  OK     none")
     changed = next(line for line in lines if "ERROR" in line)
     assert changed.startswith(" 55%")
-    assert "flexspline 10.31 ± 0.12 %, circular spline 1.50 ± <0.01 %" in changed
+    assert "flexspline 10.31 ± 0.12 %, circular spline 1.5000 ± 0.0010 %" in changed
     assert "\x1b" not in out.getvalue()
 
 
