@@ -22,7 +22,10 @@ setup(
         (f"share/{NAME}", ["package.xml"]),
         (f"share/{NAME}/launch", sorted(str(path) for path in Path("launch").glob("*.launch.py"))),
         # config is a link to the root's: setuptools and colcon reach only what lies below this folder.
-        (f"share/{NAME}/config", sorted(str(path) for path in Path("config").glob("*.*ml"))),
+        (
+            f"share/{NAME}/config",
+            sorted(str(path) for path in Path("config").glob("*.*")),
+        ),
     ],
     install_requires=["numpy>=1.26", "scipy>=1.11"],
     extras_require={

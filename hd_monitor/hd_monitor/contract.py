@@ -19,6 +19,8 @@ WRENCH = "wrench"
 TEMPERATURE = "temperature"
 DIAGNOSTICS = "/diagnostics"
 ZOOM_SPECTRUM = "zoom_spectrum"
+READINGS = ("index", "transmission_error")
+"""Topics below each spline's name (``flexspline/index``): per cent, and arcmin peak to peak."""
 RMS_CURVE = "rms_curve"
 RMS_BASELINE = "rms_curve/baseline"
 
@@ -28,7 +30,7 @@ BLOCK_OFFSET = 4
 
 _TOO_MUCH = (2.0**33, 1e9, 2.0**63)  # seconds, nanoseconds and sequence number: values from here on are damaged data
 
-MAX_ZOOM_BINS = 50
+ZOOM_BINS = 50
 """Viewers drop arrays of more than 100 values; a bin takes two."""
 
 NANOSECONDS = 1_000_000_000
@@ -127,9 +129,9 @@ def _fault(head: list[float]) -> LayoutError:
     )
 
 
-def zoom_layout(bins: int) -> tuple[Dimension, Dimension]:
-    """Dimensions of ``zoom_spectrum``: [bin, (frequency Hz, amplitude)]."""
-    return Dimension("bin", bins, 2 * bins), Dimension("frequency_amplitude", 2, 2)
+def zoom_layout() -> tuple[Dimension, Dimension]:
+    """Dimensions of ``zoom_spectrum``: frequencies [Hz], then amplitudes, as plots by message path need them."""
+    return Dimension("frequency_amplitude", 2, 2 * ZOOM_BINS), Dimension("bin", ZOOM_BINS, ZOOM_BINS)
 
 
 def rms_layout(bins: int) -> tuple[Dimension, Dimension]:

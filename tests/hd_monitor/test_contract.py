@@ -10,7 +10,6 @@ from hypothesis.extra.numpy import arrays
 
 from hd_monitor.contract import (
     BLOCK_LABEL,
-    MAX_ZOOM_BINS,
     Block,
     Dimension,
     pack_block,
@@ -125,5 +124,5 @@ def test_negative_stamps_and_numbers_are_refused(field):
 
 
 def test_the_other_layouts_describe_their_tables():
-    assert zoom_layout(MAX_ZOOM_BINS) == (Dimension("bin", 50, 100), Dimension("frequency_amplitude", 2, 2))
+    assert zoom_layout() == (Dimension("frequency_amplitude", 2, 100), Dimension("bin", 50, 50))
     assert rms_layout(7) == (Dimension("speed_bin", 7, 21), Dimension("rpm_rms_samples", 3, 3))

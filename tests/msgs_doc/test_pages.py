@@ -131,7 +131,7 @@ def test_every_source_of_input_is_in_the_table(setting: str) -> None:
 
 
 def test_the_documented_layouts_are_the_contracts() -> None:
-    for dimension in (*contract.zoom_layout(50), *contract.rms_layout(1)):
+    for dimension in (*contract.zoom_layout(), *contract.rms_layout(1)):
         line = f"{{label: {dimension.label}, size: {dimension.size}, stride: {dimension.stride}}}"
         assert line in TOPICS
     assert f"`label: {contract.BLOCK_LABEL}`" in TOPICS

@@ -47,7 +47,7 @@ def test_package_xml_is_installed_unchanged(package: str) -> None:
     [
         ("hd_monitor", "launch", "hd_monitor/launch", "*.launch.py"),
         ("hd_sim_node", "launch", "hd_sim_node/launch", "*.launch.py"),
-        ("hd_monitor", "config", "config", "*.*ml"),
+        ("hd_monitor", "config", "config", "*.*"),
     ],
 )
 def test_shared_files_are_installed_unchanged(package: str, folder: str, source: str, pattern: str) -> None:

@@ -7,7 +7,7 @@ import numpy.typing as npt
 from scipy.signal import ZoomFFT, get_window
 
 from ..arrays import FloatArray
-from ..contract import MAX_ZOOM_BINS
+from ..contract import ZOOM_BINS
 from ..errors import ParameterError
 from ..reducer import LinePair
 
@@ -80,7 +80,7 @@ class Zoom:
     (3.0, 50.0)
     """
 
-    def __init__(self, count: int, period: float, first: float, last: float, bins: int = MAX_ZOOM_BINS) -> None:
+    def __init__(self, count: int, period: float, first: float, last: float, bins: int = ZOOM_BINS) -> None:
         if count < 4 or bins < 2:
             raise ParameterError(f"a zoom of {count} samples to {bins} bins shows nothing; give at least 4 and 2")
         if not 0.0 <= first < last <= 0.5 / period:
@@ -117,7 +117,7 @@ def zoom_spectrum(
     *,
     around: LinePair,
     k: int,
-    bins: int = MAX_ZOOM_BINS,
+    bins: int = ZOOM_BINS,
 ) -> ZoomSpectrum:
     """Amplitude spectrum around a line pair, its two combination lines included.
 
@@ -136,7 +136,8 @@ def zoom_spectrum(
     k : int
         Number of the pair, for the result.
     bins : int
-        At most this many; at least 10. Fewer where the span would leave the band from 0 to half the sampling rate.
+        As many, at least 10; closer together, or not around the pair's middle, where the span would leave the band
+        from 0 to half the sampling rate.
 
     Returns
     -------
@@ -162,13 +163,16 @@ def zoom_spectrum(
             "sampling rate; choose a lower pair or a faster input"
         )
     resolution = WIDTH / (values.size * period)
-    # Bins per separation: as fine as the five separations allow, coarser where one lobe would not fit into the picture.
+    # Bins per separation: as fine as the five separations allow, coarser where one lobe would not fit into the picture,
+    # and so fine that all of them fit into the band.
     finest = bins // PAIRS_SHOWN
     per_separation = int(np.clip(np.floor(bins * separation / (LOBES_SHOWN * resolution)), 1, finest))
+    per_separation = min(max(per_separation, int(np.ceil((bins + 1) * separation / nyquist))), bins - 1)
     step = separation / per_separation
     before = (bins - per_separation) // 2
-    lowest = max(-before, -int(np.floor(left / step)))
-    highest = min(bins - 1 - before, max(per_separation, int(np.floor((nyquist - left) / step))))
+    beyond = int(np.floor((nyquist - left) / step))
+    lowest = max(min(-before, beyond - bins + 1), -int(np.floor(left / step)))
+    highest = lowest + bins - 1
     first, last = max(left + lowest * step, 0.0), min(left + highest * step, nyquist)
     zoom = Zoom(values.size, period, first, last, highest - lowest + 1)
     amplitude = zoom(values)

@@ -4,15 +4,16 @@ from collections.abc import Sequence
 
 from rclpy.lifecycle import LifecycleNode, LifecyclePublisher
 from rclpy.qos import QoSProfile
-from std_msgs.msg import Float64MultiArray
+from std_msgs.msg import Float64, Float64MultiArray
 
 from .. import contract
 from ..errors import ParameterError
+from ..reducer import LinePair
 from ..settings import JointSettings, check_change
 from ..sources import Quantity
 from .joint_watch import JointWatch
 from .memory import Memory
-from .messages import rms_message, zoom_message
+from .messages import readings_of, rms_message, zoom_message
 from .queue import most_messages, queue_depth
 from .subscriptions import DrainedSubscription, subscribed
 
@@ -48,13 +49,18 @@ class JointChannel:
         self._zoom = self._advertise(contract.ZOOM_SPECTRUM)
         self._rms = self._advertise(contract.RMS_CURVE)
         self._baseline = self._advertise(contract.RMS_BASELINE)
+        self._readings = {
+            (topic := f"{part}/{name}"): self._advertise(topic, Float64)
+            for part in LinePair._fields
+            for name in contract.READINGS
+        }
         self.joint = joint
         memory = Memory(joint, settings, node.get_logger().error) if settings.history.path else None
         self.watch = JointWatch(joint, settings, now, self._explain, self._explain_crowd, memory, self._date)
 
-    def _advertise(self, topic: str) -> LifecyclePublisher:
+    def _advertise(self, topic: str, kind: type = Float64MultiArray) -> LifecyclePublisher:
         publisher: LifecyclePublisher = self._node.create_lifecycle_publisher(
-            Float64MultiArray, topic if self._below is None else f"{self._below}/{topic}", QoSProfile(depth=10)
+            kind, topic if self._below is None else f"{self._below}/{topic}", QoSProfile(depth=10)
         )
         return publisher
 
@@ -119,15 +125,15 @@ class JointChannel:
     def destroy(self) -> None:
         """Destroy the publishers, and close the ledger."""
         self.watch.close()
-        for publisher in (self._zoom, self._rms, self._baseline):
+        for publisher in (self._zoom, self._rms, self._baseline, *self._readings.values()):
             self._node.destroy_lifecycle_publisher(publisher)
 
     def feed(self, motion: Sequence[bytes], now: int) -> None:
-        """Hand the joint's new messages to its watch; publish the curves where that led to a new assessment."""
+        """Hand the joint's new messages to its watch; publish numbers and curves where that led to a new assessment."""
         messages = {Quantity.MOTION: motion}
         messages |= {quantity: subscription.drain() for quantity, subscription in self._subscriptions.items()}
         if self.watch.feed(messages, now):
-            self._publish_curves()
+            self._publish_numbers()
 
     def _date(self) -> float:
         return float(self._node.get_clock().now().nanoseconds) / contract.NANOSECONDS
@@ -140,7 +146,10 @@ class JointChannel:
         crowds = (subscription.explain_crowd() for subscription in self._subscriptions.values())
         return "; ".join(filter(None, crowds))
 
-    def _publish_curves(self) -> None:
+    def _publish_numbers(self) -> None:
+        if (found := self.watch.present.identification) is not None:
+            for topic, value in readings_of(found).items():
+                self._readings[topic].publish(Float64(data=value))
         if (zoom := self.watch.zoom()) is not None:
             self._zoom.publish(zoom_message(zoom))
         if curve := self.watch.present.rms_curve:

@@ -1,3 +1,6 @@
+import math
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -32,17 +35,29 @@ def test_a_status_survives_the_wire(level: int) -> None:
     assert [(pair.key, pair.value) for pair in back.values] == [("speed (rpm)", "850.0")]
 
 
-def test_a_spectrum_is_laid_out_bin_by_bin() -> None:
+@pytest.mark.parametrize("relative", [False, True])
+def test_readings_that_are_known_are_numbers_by_topic(relative: bool) -> None:
+    from hd_monitor.identification.result import Identification
+    from hd_monitor.ros.messages import readings_of
+
+    nothing = Identification.none((), relative=False)
+    assert readings_of(nothing) == {}
+    errors = LinePair(0.2, math.nan)
+    found = replace(nothing, index=LinePair(0.015, 0.103), transmission_error=errors, relative=relative)
+    indexes = {} if relative else {"circular_spline/index": 1.5, "flexspline/index": 10.3}
+    assert readings_of(found) == pytest.approx({**indexes, "circular_spline/transmission_error": 0.2})
+
+
+def test_a_spectrum_is_laid_out_as_frequencies_and_then_amplitudes() -> None:
     from hd_monitor.ros.messages import zoom_message
 
     samples = np.sin(2 * np.pi * 30.0 * np.arange(4000) / 1000)
     zoom = zoom_spectrum(samples, 0.001, around=LinePair(30.0, 30.5), k=1)
     message = zoom_message(zoom)
     table = np.asarray(message.data).reshape([d.size for d in message.layout.dim])
-    np.testing.assert_array_equal(table[:, 0], zoom.frequencies)
-    np.testing.assert_array_equal(table[:, 1], zoom.amplitude)
+    np.testing.assert_array_equal(table, [zoom.frequencies, zoom.amplitude])
     assert message.layout.data_offset == 0
-    assert [d.stride for d in message.layout.dim] == [table.size, 2]
+    assert [d.stride for d in message.layout.dim] == [table.size, 50]
 
 
 def test_a_curve_is_laid_out_bin_by_bin() -> None:
