@@ -6,7 +6,7 @@ numpy at once; whatever differs becomes the next template. A message that cannot
 affect the batch.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -57,6 +57,26 @@ class MultiArrays(NamedTuple):
     data_offset: int
     data: FloatArray
     """Shape (N, values)."""
+
+
+class ReceivedStatus(NamedTuple):
+    """A diagnostic_msgs/DiagnosticStatus."""
+
+    name: str
+    level: int
+    """0 OK, 1 WARN, 2 ERROR, 3 STALE."""
+    message: str
+    hardware_id: str
+    values: Mapping[str, str]
+    """By key; of a repeated key the last one."""
+
+
+class Diagnostics(NamedTuple):
+    """A diagnostic_msgs/DiagnosticArray."""
+
+    stamp: int
+    """Header stamp [ns]."""
+    statuses: tuple[ReceivedStatus, ...]
 
 
 def _stamps(rows: npt.NDArray[np.void]) -> IntArray:
@@ -212,3 +232,21 @@ def decode_multi_arrays(messages: Sequence[bytes]) -> tuple[list[MultiArrays], l
         for place, rows, (dimensions, offset) in groups_of(messages, _parse_multi_array, faults)
     ]
     return groups, sorted(faults)
+
+
+def decode_diagnostics(message: bytes) -> Diagnostics:
+    """Decode a serialised ``diagnostic_msgs/DiagnosticArray``, of which no two are alike.
+
+    Raises
+    ------
+    LayoutError
+        If the message ends before its contents do, or is not plain CDR.
+    """
+    template = Template(message)
+    stamp = template.time()
+    statuses = []
+    for _ in range(template.count()):
+        level, name, text, hardware_id = template.byte(), template.text(), template.text(), template.text()
+        values = {template.text(): template.text() for _ in range(template.count())}
+        statuses.append(ReceivedStatus(name, level, text, hardware_id, values))
+    return Diagnostics(stamp, tuple(statuses))

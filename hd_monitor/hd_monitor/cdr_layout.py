@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .arrays import BoolArray, IntArray
+from .contract import NANOSECONDS
 from .errors import LayoutError
 
 ENCAPSULATION = 4
@@ -76,6 +77,10 @@ class Template:
         self._decisive[start : start + 4] = True
         return int(struct.unpack_from(f"{self._order}I", self._message, start)[0])
 
+    def byte(self) -> int:
+        """Read a byte, which decides nothing."""
+        return self._message[self._take(1, 1)]
+
     def text(self, *, decisive: bool = False) -> str:
         """Read a string; its length always decides the layout, its letters if `decisive`."""
         length = self.count()
@@ -89,6 +94,13 @@ class Template:
         if count > _LONGEST_SEQUENCE:
             raise LayoutError(f"a message announces {count} values; it is damaged or of another type")
         self._fields[name] = (f"{self._order}f8", (count,)), self._take(8 * count, 8 if count else 1)
+
+    def time(self) -> int:
+        """Read a header and return its stamp [ns]."""
+        start = self._at
+        self.stamp()
+        seconds, nanoseconds = struct.unpack_from(f"{self._order}iI", self._message, start)
+        return int(seconds) * NANOSECONDS + int(nanoseconds)
 
     def stamp(self) -> None:
         """Note a header: its stamp as fields, the length of its frame's name as layout."""

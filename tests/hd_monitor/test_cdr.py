@@ -1,5 +1,6 @@
 """Bulk decoding gives, message for message, what an independent CDR implementation (rosbags) wrote."""
 
+import contextlib
 import math
 from typing import Any
 
@@ -9,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hd_monitor import cdr
+from hd_monitor.errors import LayoutError
 
 typesys = pytest.importorskip("rosbags.typesys")
 STORE = typesys.get_typestore(typesys.Stores.ROS2_JAZZY)
@@ -161,6 +163,32 @@ def test_multi_arrays_come_back_with_their_layout(rows: list[Any]) -> None:
     for place, (dims, offset, data, _) in enumerate(rows):
         assert seen[place][:2] == (dims, offset)
         np.testing.assert_array_equal(seen[place][2], data)
+
+
+texts = st.text(max_size=12).filter(lambda text: "\0" not in text)
+statuses = st.tuples(st.integers(0, 3), texts, texts, texts, st.dictionaries(texts, texts, max_size=4))
+
+
+@settings(max_examples=60)
+@given(head=headers, rows=st.lists(statuses, max_size=4), little_endian=st.booleans())
+def test_diagnostics_come_back_with_every_key(head: Any, rows: list[Any], little_endian: bool) -> None:
+    pair = T["diagnostic_msgs/msg/KeyValue"]
+    written = [
+        T["diagnostic_msgs/msg/DiagnosticStatus"](*texts, [pair(key, value) for key, value in values.items()])
+        for *texts, values in rows
+    ]
+    message = T["diagnostic_msgs/msg/DiagnosticArray"](header(*head), written)
+    read = cdr.decode_diagnostics(raw(message, "diagnostic_msgs/msg/DiagnosticArray", little_endian=little_endian))
+    assert read.stamp == stamp(head)
+    found = [(s.level, s.name, s.message, s.hardware_id, s.values) for s in read.statuses]
+    assert found == rows
+
+
+@settings(max_examples=200)
+@given(noise=st.binary(max_size=120))
+def test_diagnostics_of_noise_are_an_error_of_the_layout(noise: bytes) -> None:
+    with contextlib.suppress(LayoutError):
+        cdr.decode_diagnostics(noise)
 
 
 def test_a_truncated_message_is_a_fault_and_spoils_no_other() -> None:
