@@ -30,6 +30,7 @@ setup(
     install_requires=["numpy>=1.26", "scipy>=1.11"],
     extras_require={
         "offline": ["mcap>=1.0", "lz4>=3.1", "zstandard>=0.19", "matplotlib>=3.6", "jinja2>=3.1", "pyyaml>=6.0"],
+        "watch": ["textual>=1.0", "rich>=13"],
         "test": ["pytest"],
     },
     entry_points={

@@ -23,6 +23,7 @@ STATUSES = (
 )
 
 _SYMBOLS = "ζ±²"  # in what the commands print
+_EXTRAS = {"pyarrow": "parquet", "textual": "watch", "rich": "watch"}
 _ROS = {"rclpy", "rcl_interfaces", "builtin_interfaces", "lifecycle_msgs", "std_srvs"}
 
 
@@ -144,7 +145,7 @@ def _missing(error: ModuleNotFoundError) -> str:
             f"needs ROS 2 ({name} is missing): source your ROS installation, or run pip install '.[ros]' "
             "in the checkout"
         )
-    extra = "parquet" if name == "pyarrow" else "offline"
+    extra = _EXTRAS.get(name, "offline")
     return (
         f"needs the Python package {name!r}, which is not installed: run pip install '.[{extra}]' in the checkout; "
         "with colcon, or where pip calls the environment externally managed, see the README, On a robot"

@@ -10,7 +10,7 @@ import pytest
 
 import hd_monitor
 
-SHELLS = {"ros", "offline", "paper", "cli"}
+SHELLS = {"ros", "offline", "paper", "cli", "watch"}
 ALLOWED = {"hd_monitor", "numpy", "scipy"}
 PACKAGE = Path(hd_monitor.__file__).parent
 ROOT = Path(__file__).resolve().parents[2]

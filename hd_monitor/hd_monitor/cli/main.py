@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 COMMANDS = {
     "replay": "put a recorded bag through the same core, with JSON and a report",
+    "watch": "show all joints in the terminal, live or from a bag",
     "compare": "compare two bags or two JSON results: what changed",
     "history": "show what the ledger knows of every reducer, and what changed",
     "identify": "estimate the stiffness indexes, fn and ζ from a recorded run",

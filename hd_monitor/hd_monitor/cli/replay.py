@@ -15,6 +15,7 @@ from ..offline.parameters import load_parameters, parse_override
 from ..offline.plan import Request
 from ..offline.run import replay_bags
 from ..offline.summary import summarise
+from .reading import add_reading_arguments
 
 _FAIL_ON = {"warn": Level.WARN, "error": Level.ERROR}
 
@@ -40,18 +41,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def add_input_arguments(parser: argparse.ArgumentParser, result: str = "result") -> None:
     """Add the arguments that say how a bag is to be read, and where the `result` goes as JSON."""
-    parser.add_argument("--params", type=Path, metavar="FILE", help="ROS parameter file, the same as the node's")
-    parser.add_argument("--node", metavar="NAME", help="full name of the node in FILE whose parameters are meant")
-    parser.add_argument(
-        "-p", "--param", action="append", default=[], metavar="NAME:=VALUE", help="set one parameter (repeatable)"
-    )
-    parser.add_argument(
-        "--joint", action="append", default=[], metavar="NAME", help="joint to look at (repeatable); default: all"
-    )
-    parser.add_argument(
-        "--remap", action="append", default=[], metavar="FROM:=TO", help="topic of the contract := recorded topic"
-    )
-    parser.add_argument("--namespace", metavar="NS", help="namespace of the node, where several were recorded")
+    add_reading_arguments(parser)
     parser.add_argument(
         "--chunk-limit",
         type=_mebibytes,
@@ -85,7 +75,7 @@ def request_from(arguments: argparse.Namespace) -> Request:
         joints=arguments.joint,
         namespace=arguments.namespace,
         remap=remap,
-        chunk_limit=arguments.chunk_limit,
+        chunk_limit=arguments.chunk_limit or CHUNK_LIMIT,
     )
 
 

@@ -41,6 +41,7 @@ def run_without(package: str, *words: str, module: str = "hd_monitor.cli.main") 
         ("hd_sim_node", ("parameters",), "needs the package hd_sim_node, which is not installed"),
         ("mcap", ("replay", "bag"), "'.[offline]'"),
         ("pyarrow", ("history", "--history", "missing", "--parquet", "out"), "'.[parquet]'"),
+        ("textual", ("watch",), "'.[watch]'"),
     ],
 )
 def test_what_is_missing_is_one_clear_line(package: str, words: tuple[str, ...], advice: str) -> None:

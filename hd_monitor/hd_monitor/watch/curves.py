@@ -1,0 +1,66 @@
+"""The curves beside the statuses: which topic is whose, and how its array is read."""
+
+from collections.abc import Collection, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from .. import contract
+from ..arrays import FloatArray
+from ..cdr import decode_multi_arrays
+from ..errors import LayoutError
+
+NAMES = (contract.ZOOM_SPECTRUM, contract.RMS_CURVE, contract.RMS_BASELINE)
+
+_MOST_COLUMNS = 3
+
+
+class Curve(NamedTuple):
+    """Points of a curve, by rising abscissa."""
+
+    x: tuple[float, ...]
+    """Frequencies [Hz] or wave-generator speeds [rpm]."""
+    y: tuple[float, ...]
+    """Amplitudes [rad/s²] or RMS [m/s²]."""
+
+
+def topic_of(topics: Collection[str], node: str, joint: str, name: str) -> str | None:
+    """Find a joint's topic: below its name where a node watches several joints, else beside the node; None without.
+
+    Examples
+    --------
+    >>> topic_of({"/arm/elbow/rms_curve"}, "/arm/hd_monitor_node", "elbow", "rms_curve")
+    '/arm/elbow/rms_curve'
+    """
+    namespace = node.rpartition("/")[0]
+    return next((topic for topic in (f"{namespace}/{joint}/{name}", f"{namespace}/{name}") if topic in topics), None)
+
+
+def curve_from(message: bytes, name: str) -> Curve:
+    """Read a serialised array of one of the topics in `NAMES`.
+
+    Raises
+    ------
+    LayoutError
+        If it is not laid out as the contract says.
+    """
+    groups, faults = decode_multi_arrays([message])
+    if faults:
+        raise LayoutError(faults[0].reason)
+    sizes = tuple(dimension.size for dimension in groups[0].dimensions)
+    data = groups[0].data[0]
+    if len(sizes) != 2 or sizes[0] * sizes[1] != data.size:
+        raise LayoutError(f"an array of {name} announces {sizes} but carries {data.size} values")
+    table = data.reshape(sizes)
+    return _curve(table if sizes[1] <= _MOST_COLUMNS else table.T)  # planar where it is wide: points outnumber columns
+
+
+def curve_of(x: Sequence[float] | FloatArray, y: Sequence[float] | FloatArray) -> Curve:
+    """Return the points that are finite."""
+    table = np.column_stack([np.asarray(x, dtype=np.float64), np.asarray(y, dtype=np.float64)])
+    return _curve(table)
+
+
+def _curve(rows: FloatArray) -> Curve:
+    finite = rows[np.isfinite(rows[:, :2]).all(axis=1)]
+    return Curve(tuple(finite[:, 0].tolist()), tuple(finite[:, 1].tolist()))

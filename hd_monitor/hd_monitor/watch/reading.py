@@ -1,0 +1,86 @@
+"""A measured quantity of a spline beside its limits, as a status publishes it."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from ..diagnosis.uncertain import decimals, with_std
+
+PARTS = ("flexspline", "circular_spline")
+"""By the names in ``component``."""
+
+_HALF_WIDTH = 1.96  # standard deviations on either side of a 95 % interval
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Reading:
+    """A quantity of one spline.
+
+    Attributes
+    ----------
+    part : str
+        One of `PARTS`.
+    quantity : str
+        ``index``, ``share`` or ``transmission error``, as in the status's keys.
+    unit : str
+        ``%`` or ``arcmin``.
+    value, std : float
+        In that unit; `std` is NaN where the status has none.
+    warn, error : float
+        Limits in that unit; NaN where there are none.
+    """
+
+    part: str
+    quantity: str
+    unit: str
+    value: float
+    std: float
+    warn: float
+    error: float
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """The 95 % interval, which does not extend below zero; NaN where the deviation is unknown."""
+        return max(self.value - _HALF_WIDTH * self.std, 0.0), self.value + _HALF_WIDTH * self.std
+
+    @property
+    def severity(self) -> float:
+        """The value over the error limit; NaN without one."""
+        return self.value / self.error if self.error > 0.0 else math.nan
+
+    @property
+    def digits(self) -> int:
+        """Decimals of the interval's ends: one fewer than of the value, at least 1 and at most 3."""
+        return min(max(decimals(self.std) - 1, 1), 3)
+
+    @property
+    def with_std(self) -> str:
+        """The value with its standard deviation."""
+        return with_std(self.value, self.std) if math.isfinite(self.std) else f"{self.value:.1f} ± ?"
+
+
+def readings_of(values: Mapping[str, str]) -> tuple[Reading, ...]:
+    """Find the readings among a reducer status's values: a pair of indexes or shares, and one of errors."""
+    found = []
+    for quantity, unit in (("index", "%"), ("share", "%"), ("transmission error", "arcmin")):
+        limited = quantity != "share"
+        warn, error = (
+            number(values, f"{level} limit ({unit})") if limited else math.nan for level in ("warn", "error")
+        )
+        for part in PARTS:
+            name = f"{part.replace('_', ' ')} {quantity}"
+            value, std = number(values, f"{name} ({unit})"), number(values, f"{name} std ({unit})")
+            if not math.isnan(value):
+                found.append(
+                    Reading(part=part, quantity=quantity, unit=unit, value=value, std=std, warn=warn, error=error)
+                )
+    return tuple(found)
+
+
+def number(values: Mapping[str, str], key: str) -> float:
+    """Read the value of a key; NaN where it is missing, no number, or not finite."""
+    try:
+        value = float(values[key])
+    except (KeyError, ValueError):
+        return math.nan
+    return value if math.isfinite(value) else math.nan
