@@ -12,8 +12,6 @@ from ..errors import LayoutError
 
 NAMES = (contract.ZOOM_SPECTRUM, contract.RMS_CURVE, contract.RMS_BASELINE)
 
-_MOST_COLUMNS = 3
-
 
 class Curve(NamedTuple):
     """Points of a curve, by rising abscissa."""
@@ -52,7 +50,7 @@ def curve_from(message: bytes, name: str) -> Curve:
     if len(sizes) != 2 or sizes[0] * sizes[1] != data.size:
         raise LayoutError(f"an array of {name} announces {sizes} but carries {data.size} values")
     table = data.reshape(sizes)
-    return _curve(table if sizes[1] <= _MOST_COLUMNS else table.T)  # planar where it is wide: points outnumber columns
+    return _curve(table.T if name == contract.ZOOM_SPECTRUM else table)  # planes of points, or rows
 
 
 def curve_of(x: Sequence[float] | FloatArray, y: Sequence[float] | FloatArray) -> Curve:

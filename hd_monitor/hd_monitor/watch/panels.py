@@ -154,7 +154,7 @@ def curves(joint: Joint, width: int, height: int) -> list[Line]:
         rows += drawing.chart(spectrum, width - 2, each, "Hz")
         peak = max(spectrum.y)
         at = spectrum.x[spectrum.y.index(peak)]
-        caption = f"{peak:.3g} at {at:.4g} Hz; of the pair in the middle the left line is the circular spline's"
+        caption = f"{peak:.3g} at {at:.4g} Hz; of the pair the left line is the circular spline's"
         rows += labelled("", caption, width, "quiet")
     else:
         rows.append(line(Span("          none yet: it comes while the joint turns steadily", "quiet")))

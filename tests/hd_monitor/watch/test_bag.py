@@ -48,7 +48,7 @@ def test_a_recording_gives_the_verdict_of_its_replay(recording: Path) -> None:
     assert joint.input is not None
     assert joint.input.values["fault_code"] == replayed["input"]["fault_code"]
     assert joint.curves[contract.RMS_CURVE].y == pytest.approx([point["rms"] for point in replayed["rms_curve"]])
-    assert len(joint.curves[contract.ZOOM_SPECTRUM].x) == contract.MAX_ZOOM_BINS
+    assert len(joint.curves[contract.ZOOM_SPECTRUM].x) == contract.ZOOM_BINS
     assert joint.before == "no verdict"
     assert 5.0 < (joint.stamp - joint.since) / 1e9 < 12.0
 
@@ -99,8 +99,8 @@ def diagnostics(stamp: int, *statuses: Any) -> Any:
 
 def spectrum() -> Any:
     dimension, layout = T["std_msgs/msg/MultiArrayDimension"], T["std_msgs/msg/MultiArrayLayout"]
-    data = np.column_stack((np.linspace(56.0, 60.0, 50), np.ones(50))).ravel()
-    dimensions = [dimension("bin", 50, 100), dimension("frequency_amplitude", 2, 2)]
+    data = np.concatenate((np.linspace(56.0, 60.0, 50), np.ones(50)))
+    dimensions = [dimension("frequency_amplitude", 2, 100), dimension("bin", 50, 50)]
     return T["std_msgs/msg/Float64MultiArray"](layout(dimensions, 0), data)
 
 
