@@ -7,10 +7,13 @@ from rclpy.qos import QoSProfile
 from std_msgs.msg import Float64, Float64MultiArray
 
 from .. import contract
-from ..errors import ParameterError
+from ..errors import OutputError, ParameterError
+from ..history.mcap import Channel
+from ..history.snapshot import Snapshots
 from ..reducer import LinePair
 from ..settings import JointSettings, check_change
 from ..sources import Quantity
+from .definitions import definition_of
 from .joint_watch import JointWatch
 from .memory import Memory
 from .messages import readings_of, rms_message, zoom_message
@@ -57,6 +60,8 @@ class JointChannel:
         self.joint = joint
         memory = Memory(joint, settings, node.get_logger().error) if settings.history.path else None
         self.watch = JointWatch(joint, settings, now, self._explain, self._explain_crowd, memory, self._date)
+        remembers = bool(settings.history.path)
+        self._snapshots = Snapshots(joint, settings, self.watch.present.verdict.level) if remembers else None
 
     def _advertise(self, topic: str, kind: type = Float64MultiArray) -> LifecyclePublisher:
         publisher: LifecyclePublisher = self._node.create_lifecycle_publisher(
@@ -132,8 +137,29 @@ class JointChannel:
         """Hand the joint's new messages to its watch; publish numbers and curves where that led to a new assessment."""
         messages = {Quantity.MOTION: motion}
         messages |= {quantity: subscription.drain() for quantity, subscription in self._subscriptions.items()}
+        if self._snapshots is not None:
+            self._snapshots.recent.add(round(self._date() * contract.NANOSECONDS), messages)
         if self.watch.feed(messages, now):
             self._publish_numbers()
+            self._take_snapshot()
+
+    def _take_snapshot(self) -> None:
+        """Write what led to a warning or an error, where that is news and there is a ledger."""
+        present = self.watch.present
+        if self._snapshots is None or not self._snapshots.is_due(present.verdict.level):
+            return
+        heard = dict(self._subscriptions)
+        if self._motion is not None:
+            heard[Quantity.MOTION] = self._motion
+        channels = {
+            quantity: Channel(one.topic, one.kind.replace("/", "/msg/"), definition_of(one.kind))
+            for quantity, one in heard.items()
+        }
+        logger = self._node.get_logger()
+        try:
+            logger.info(f"{self.joint}: snapshot written to {self._snapshots.write(present, channels)}")
+        except OutputError as error:  # costs the snapshot, never the verdict
+            logger.error(f"{self.joint}: {error}")
 
     def _date(self) -> float:
         return float(self._node.get_clock().now().nanoseconds) / contract.NANOSECONDS

@@ -5,12 +5,13 @@ takes most of a core. Here the subscription never enters the wait set; its queue
 for a few microseconds a message, and the messages stay serialised until numpy decodes them all at once.
 """
 
-from importlib import import_module
 from typing import Any
 
 from rclpy.callback_groups import CallbackGroup
 from rclpy.node import Node
 from rclpy.qos import QoSCompatibility, QoSHistoryPolicy, QoSProfile, QoSReliabilityPolicy, qos_check_compatible
+
+from .definitions import class_of
 
 
 class PolledGroup(CallbackGroup):
@@ -54,8 +55,8 @@ class DrainedSubscription:
     def __init__(self, node: Node, topic: str, kind: str, *, depth: int, reliability: str) -> None:
         self._node = node
         self._request = (topic, kind, depth, reliability)
-        package, _, name = kind.partition("/")
-        self._type = getattr(import_module(f"{package}.msg"), name)
+        self.kind = kind
+        self._type = class_of(kind)
         self._depth = depth
         self._qos = QoSProfile(
             history=QoSHistoryPolicy.KEEP_LAST,
@@ -65,7 +66,7 @@ class DrainedSubscription:
         self._subscription = node.create_subscription(
             self._type, topic, lambda _: None, self._qos, callback_group=PolledGroup(), raw=True
         )  # rclpy requires a callback; the group keeps it from being called
-        self._type_name = f"{package}/msg/{name}"
+        self._type_name = kind.replace("/", "/msg/")
         self.topic: str = self._subscription.topic_name
 
     def drain(self) -> list[bytes]:
