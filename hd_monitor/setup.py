@@ -31,6 +31,7 @@ setup(
     extras_require={
         "offline": ["mcap>=1.0", "lz4>=3.1", "zstandard>=0.19", "matplotlib>=3.6", "jinja2>=3.1", "pyyaml>=6.0"],
         "watch": ["textual>=1.0", "rich>=13"],
+        "complete": ["argcomplete>=3.1"],
         "test": ["pytest"],
     },
     entry_points={

@@ -8,10 +8,12 @@ from functools import partial
 from types import ModuleType
 from typing import TYPE_CHECKING
 
-from ..errors import HdMonitorError
+from .. import __version__
+from ..errors import HdMonitorError, did_you_mean
 from ..offline.parameters import check_files
 from ..process import STATUSES, guard, set_up_process
 from . import extensions
+from .completion import complete, completed_words
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
@@ -38,7 +40,7 @@ SIMULATOR_COMMANDS = {
 def main(argv: Sequence[str] | None = None) -> int:
     """Run ``hd-monitor`` and return its exit status, one of `STATUSES`."""
     set_up_process()
-    words = list(sys.argv[1:] if argv is None else argv)
+    words = list(completed_words() or (sys.argv[1:] if argv is None else argv))
     command = next((word for word in words if not word.startswith("-")), "")
     return guard(f"hd-monitor {command}".rstrip(), lambda: _parsed(words))
 
@@ -50,19 +52,26 @@ def _parsed(words: Sequence[str]) -> Callable[[], int]:
         description="Watches harmonic-drive reducers and names the part that is going bad.",
         epilog=STATUSES,
     )
+    parser.add_argument("--version", action="version", version=f"hd-monitor {__version__}")
     subparsers = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
     added = extensions.declared(extensions.COMMANDS)
     origins = {name: f"from the package {entry.module.partition('.')[0]}" for name, entry in added.items()}
     texts = {**origins, **SIMULATOR_COMMANDS, **COMMANDS}
-    chosen = next((word for word in words if word in texts), None)
+    chosen = next((word for word in words if not word.startswith("-")), None)
+    if chosen is not None and chosen not in texts and completed_words() is None:
+        hint = did_you_mean(chosen, texts) or "; hd-monitor --help lists them"
+        raise HdMonitorError(f"{chosen!r} is not one of its commands{hint}")
     if chosen in COMMANDS:
         check_files(words, "--params")
     for name, text in texts.items():
-        subparser = subparsers.add_parser(name, help=text, description=text)
+        subparser = subparsers.add_parser(
+            name, help=text, description=f"{text[:1].upper()}{text[1:]}.", epilog=STATUSES
+        )
         if name == chosen:
             command = _load(name, added)
             command.configure(subparser)
             subparser.set_defaults(run=command.run)
+    complete(parser)
     arguments = parser.parse_args(words)
     return partial(arguments.run, arguments)
 

@@ -1,5 +1,6 @@
 """Progress of long replays: one line on a terminal, rewritten; a line every few seconds elsewhere."""
 
+import math
 import sys
 import time
 
@@ -40,7 +41,9 @@ class ProgressLine:
         text = f"{done:.0f} s of the recording, {done / (now - self._began):.0f} times real time"
         first, last = self._bag.span or (0, 0)
         if last > first:
-            text = f"{min((window.end - first) / (last - first), 1.0):4.0%}: {text}"
+            part = min((window.end - first) / (last - first), 1.0)
+            left = (now - self._began) * (1.0 / part - 1.0) if part > 0.0 else math.nan
+            text = f"{part:4.0%}: {text}" + (f", {left:.0f} s left" if math.isfinite(left) else "")
         sys.stderr.write(f"{_WIPE}{text}" if self._terminal else f"{text}\n")
         sys.stderr.flush()
 

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from hd_monitor import __version__
 from hd_monitor.cli import extensions
 from hd_monitor.cli.main import COMMANDS, SIMULATOR_COMMANDS, main
 
@@ -17,12 +18,61 @@ def test_help_lists_every_command(capsys: pytest.CaptureFixture[str]) -> None:
     assert all(name in output for name in (*COMMANDS, *SIMULATOR_COMMANDS))
 
 
-@pytest.mark.parametrize("words", [[], ["dance"], ["replay", "--dance"]])
+@pytest.mark.parametrize("words", [[], ["--dance"], ["replay", "--dance"]])
 def test_wrong_words_are_status_2(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as caught:
         main(words)
     assert caught.value.code == 2
     assert "usage: hd-monitor" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("word", "says"),
+    [
+        ("reply", "'reply' is not one of its commands; did you mean replay?"),
+        ("dance", "'dance' is not one of its commands; hd-monitor --help lists them"),
+    ],
+)
+def test_a_misspelt_command_is_one_line(word: str, says: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([word, "--report", "x"]) == 2
+    assert says in capsys.readouterr().err
+
+
+def test_the_version_is_that_of_the_package(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as caught:
+        main(["--version"])
+    assert caught.value.code == 0
+    assert capsys.readouterr().out == f"hd-monitor {__version__}\n"
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_the_help_of_every_command_says_what_it_does_and_how_it_ends(
+    name: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as caught:
+        main([name, "--help"])
+    assert caught.value.code == 0
+    words = " ".join(capsys.readouterr().out.split())
+    assert words.startswith(f"usage: hd-monitor {name} ")
+    assert "exit status: 0 done" in words.lower()
+
+
+@pytest.mark.parametrize(
+    ("line", "offers"),
+    [
+        ("hd-monitor re", {"replay"}),
+        ("hd-monitor replay --rep", {"--report"}),
+        ("hd-monitor replay --fail-on ", {"error", "warn"}),
+    ],
+)
+def test_the_shell_completes_commands_options_and_choices(tmp_path: Path, line: str, offers: set[str]) -> None:
+    pytest.importorskip("argcomplete")
+    out = tmp_path / "completions"
+    asked = {"COMP_LINE": line, "COMP_POINT": str(len(line)), "_ARGCOMPLETE_STDOUT_FILENAME": str(out)}
+    shell = {"_ARGCOMPLETE": "1", "_ARGCOMPLETE_IFS": "\n", "_ARGCOMPLETE_SUPPRESS_SPACE": "1", **asked}
+    code = "import sys; from hd_monitor.cli.main import main; sys.exit(main())"
+    subprocess.run([sys.executable, "-c", code], env={**os.environ, **shell}, timeout=60, check=False)
+    assert {word.strip() for word in out.read_text().split("\n")} == offers
 
 
 def run_without(package: str, *words: str, module: str = "hd_monitor.cli.main") -> subprocess.CompletedProcess[str]:
