@@ -110,3 +110,17 @@ def test_latch_holds_until_it_is_reset(bench: Bench, peer: Any) -> None:
     assert held.component == "flexspline"
     assert trigger(peer, "reset_latch").success
     bench.until_status(lambda s: s.component == "none", "the present verdict")
+
+
+def test_the_self_test_answers_with_the_statuses_and_publishes_them(bench: Bench, peer: Any, feeder: Feeder) -> None:
+    from diagnostic_msgs.srv import SelfTest
+
+    bench.monitor("reducer.serial:=A7")
+    feed_until(bench, feeder, 1000)
+    answer = peer.call(SelfTest, "hd_monitor_node/self_test", SelfTest.Request())
+    assert [status.name for status in answer.status] == [
+        "/hd_monitor_node: joint reducer",
+        "/hd_monitor_node: joint input",
+    ]
+    worst = max(status.level for status in answer.status)
+    assert (answer.id, answer.passed) == ("A7", bytes([worst == b"\0"]))

@@ -92,10 +92,10 @@ def status_of(assessment: Assessment, joint: str) -> Status:
     return Status(
         subject=f"{joint} reducer",
         level=int(verdict.level),
-        message=shortened(verdict.reason),
+        message=shortened(_plain(verdict.reason)),
         hardware_id=assessment.settings.serial,
         kind=kind,
-        values=tuple((key, value) for key, value in values if value is not None),
+        values=tuple((key, _plain(value)) for key, value in values if value is not None),
     )
 
 
@@ -107,17 +107,17 @@ def input_status_of(assessment: Assessment, joint: str) -> Status:
     return Status(
         subject=f"{joint} input",
         level=int(state.level),
-        message=shortened(state.reason),
+        message=shortened(_plain(state.reason)),
         hardware_id=assessment.settings.serial,
         kind=(state.reason,),
         values=(
             ("joint", joint),
             ("fault_code", state.code.value),
-            ("reason", state.reason),
+            ("reason", _plain(state.reason)),
             samples,
             *((("sampling rate (Hz)", rate),) if rate is not None else ()),
             *faults,
-            ("last complaint", quality.last_fault or "none"),
+            ("last complaint", _plain(quality.last_fault) or "none"),
         ),
     )
 
@@ -165,6 +165,11 @@ def _pairs(key: str, values: LinePair, stds: LinePair) -> list[tuple[str, str | 
             (" std", _std(getattr(stds, part))),
         )
     ]
+
+
+def _plain(text: str) -> str:
+    """Return a text without double quotes, which loggers into databases write around it unescaped."""
+    return text.replace('"', "'")
 
 
 def _std(value: float) -> str | None:

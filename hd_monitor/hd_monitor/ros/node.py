@@ -4,12 +4,14 @@ from collections.abc import Sequence
 from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray
+from diagnostic_msgs.srv import SelfTest
 from rclpy.lifecycle import LifecycleState, TransitionCallbackReturn
 from rclpy.qos import QoSProfile
 from std_srvs.srv import Trigger
 
 from .. import contract
 from ..diagnosis.status import Status
+from ..diagnosis.verdict import Level
 from ..errors import HdMonitorError
 from ..process import trim_memory
 from ..sources import JOINT_STATES, Quantity
@@ -70,6 +72,7 @@ class HdMonitorNode(ManagedNode):
         except HdMonitorError as error:
             self.dismantle()
             return self.refuse(error)
+        self._own_services.append(self.create_service(SelfTest, "~/self_test", self._report))
         joints = list(self._channels)
         for action in ("reset_latch", "reset", "set_baseline"):
             self._offer(f"~/{action}", action, joints)
@@ -210,6 +213,16 @@ class HdMonitorNode(ManagedNode):
         self._log.note_error(channel.joint, channel.watch.last_error)
 
     # Requests -------------------------------------------------------------------------------------------------------
+
+    def _report(self, request: SelfTest.Request, response: SelfTest.Response) -> SelfTest.Response:
+        """Publish all statuses now, and answer with them."""
+        self._publish_all()
+        watches = [channel.watch for channel in self._channels.values()]
+        statuses = [status for watch in watches for status in watch.statuses()]
+        response.id = ", ".join(watch.settings.serial or watch.joint for watch in watches)
+        response.passed = bytes([all(status.level == Level.OK for status in statuses)])
+        response.status = [diagnostic_status(status, self.get_fully_qualified_name()) for status in statuses]
+        return response
 
     def _offer(self, name: str, action: str, of: list[str]) -> None:
         joints = ", ".join(of)
