@@ -3,12 +3,14 @@
     python tests/benchmarks/ledger.py [--joints 10000] [--entries 1000] [--ask 20] FILE
 
 writes the entries of so many joints by turns, as they come in from running robots, unless the file is there already,
-and prints how long a node's questions take: the newest entry, those that it reads at its start, and all, for the
-baseline. An entry takes 1.4 kB.
+and prints how long the questions of a node take: the newest entry, those that it reads at its start, and all, for the
+baseline; then that of `hd-monitor history`. Each is asked with nothing of the file in memory, in wall-clock time. An
+entry takes 1.4 kB.
 """
 
 import argparse
 import json
+import os
 import random
 import sqlite3
 import statistics
@@ -18,8 +20,10 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
 
+from hd_monitor.history.entry import Entry
 from hd_monitor.history.ledger import Ledger
 from hd_monitor.history.rating import baseline_of
+from hd_monitor.offline.history import read_histories
 from hd_monitor.ros.memory import NEWEST
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
@@ -30,24 +34,30 @@ SECONDS = 300.0
 """From one entry of a joint to the next."""
 
 
+def alike(**more: object) -> Entry:
+    """Return an entry as joint states alone make it."""
+    made: Entry = entry(relative=True, evidence=(direction(), direction("reverse")), seconds=SECONDS, **more)
+    return made
+
+
 def build(path: Path, joints: int, entries: int) -> None:
     """Write the file, in bulk: what it holds is what single entries would have left."""
-    pair = (direction(), direction("reverse"))
-    content = json.dumps(entry(relative=True, evidence=pair, seconds=SECONDS).content(), separators=(",", ":"))
+    content = json.dumps(alike().content(), separators=(",", ":"))
     Ledger(path).close()
     file = sqlite3.connect(path)
-    for pragma in ("synchronous = OFF", "journal_mode = OFF"):
+    for pragma in ("synchronous = OFF", "journal_mode = OFF", "cache_size = -600000"):
         file.execute(f"PRAGMA {pragma}")
     serials = [(number + 1, f"S{number}", "") for number in range(joints)]
     file.executemany("INSERT INTO reducers (id, serial, joint) VALUES (?, ?, ?)", serials)
 
-    def rows() -> Iterator[tuple[int, str, float, str, str, str]]:
+    def rows() -> Iterator[tuple[int, int, str, float, str, str, str]]:
         for turn in range(entries):
             for reducer in range(1, joints + 1):
-                yield reducer, "arm", SECONDS * turn + reducer % 300, "evidence", "", content
+                own = (reducer << 32) + turn + 1
+                yield own, reducer, "arm", SECONDS * turn + reducer % 300, "evidence", "", content
 
     file.executemany(
-        "INSERT INTO entries (reducer, joint, time, kind, recording, content) VALUES (?, ?, ?, ?, ?, ?)", rows()
+        "INSERT INTO entries (id, reducer, joint, time, kind, recording, content) VALUES (?, ?, ?, ?, ?, ?, ?)", rows()
     )
     file.commit()
     file.close()
@@ -58,6 +68,14 @@ def milliseconds(question: Callable[[], object]) -> float:
     start = time.perf_counter()
     question()
     return 1e3 * (time.perf_counter() - start)
+
+
+def forget(path: Path) -> None:
+    """Have the system drop what it holds of a file in memory."""
+    file = os.open(path, os.O_RDONLY)
+    os.fsync(file)
+    os.posix_fadvise(file, 0, 0, os.POSIX_FADV_DONTNEED)
+    os.close(file)
 
 
 def main() -> None:
@@ -78,9 +96,11 @@ def main() -> None:
             "the newest entry": ledger.latest,
             f"the newest {NEWEST}": lambda serial: ledger.entries(serial, newest=NEWEST),
             "all, and their baseline": lambda serial: baseline_of(ledger.entries(serial)),
-            "one more written": lambda serial: ledger.append(entry(serial=serial, joint="arm", time=1e9)),
+            "all that hd-monitor history says": lambda serial: read_histories(ledger, serial),
+            "one more written": lambda serial: ledger.append(alike(serial=serial, time=1e9)),
         }
         for name, ask in questions.items():
+            forget(options.file)
             times = sorted(milliseconds(partial(ask, f"S{number}")) for number in asked)
             print(f"{size:.1f} GB, {name}: median {statistics.median(times):.1f} ms, longest {times[-1]:.1f} ms")
 

@@ -184,7 +184,10 @@ def _plain(value: Any) -> Any:
 
 
 def _both(values: Any) -> LinePair:
-    return LinePair(*(math.nan if value is None else float(value) for value in values))
+    circular_spline, flexspline = values  # spelt out: a large ledger has ten thousands
+    return LinePair(
+        math.nan if circular_spline is None else circular_spline, math.nan if flexspline is None else flexspline
+    )
 
 
 def _pair(values: Any) -> LinePair | None:
@@ -206,6 +209,10 @@ def _verdict(given: Mapping[str, Any]) -> Verdict:
 
 
 def _direction(given: Mapping[str, Any]) -> DirectionEvidence:
-    pairs = {name: _both(given[name]) for name in ("amplitude", "std", "chance", "dominance", "phase")}
-    numbers = {name: math.nan if given[name] is None else given[name] for name in ("noise", "floor", "speed")}
-    return DirectionEvidence(**{**given, **pairs, **numbers})
+    whole = dict(given)
+    for name in ("amplitude", "std", "chance", "dominance", "phase"):
+        whole[name] = _both(whole[name])
+    for name in ("noise", "floor", "speed"):
+        if whole[name] is None:
+            whole[name] = math.nan
+    return DirectionEvidence(**whole)

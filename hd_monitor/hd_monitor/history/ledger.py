@@ -18,6 +18,12 @@ from .entry import Entry, Kind
 PATIENCE = 2.0
 """s to wait for another process that is writing."""
 
+_REDUCER_BITS = 32
+"""By which an entry's id begins with its reducer: SQLite lays rows out by id, so that a reducer's lie together."""
+
+_PAGE = 32_768
+"""Bytes that are read at once, some twenty entries; of a new file."""
+
 _SCHEMA = (
     """
 CREATE TABLE reducers (
@@ -39,6 +45,26 @@ CREATE INDEX by_time ON entries (reducer, time);
 CREATE UNIQUE INDEX one_of_a_recording ON entries (reducer, recording, time, kind) WHERE recording != '';
 """,
     "CREATE INDEX exchanges ON entries (reducer, time) WHERE kind = 'exchange';",
+    f"""
+CREATE TABLE gathered (
+    id INTEGER PRIMARY KEY,
+    reducer INTEGER NOT NULL REFERENCES reducers,
+    joint TEXT NOT NULL,
+    time REAL NOT NULL,
+    kind TEXT NOT NULL,
+    recording TEXT NOT NULL,
+    content TEXT NOT NULL
+);
+INSERT INTO gathered
+    SELECT (reducer << {_REDUCER_BITS}) + ROW_NUMBER() OVER (PARTITION BY reducer ORDER BY id),
+        reducer, joint, time, kind, recording, content
+    FROM entries;
+DROP TABLE entries;
+ALTER TABLE gathered RENAME TO entries;
+CREATE INDEX by_time ON entries (reducer, time);
+CREATE UNIQUE INDEX one_of_a_recording ON entries (reducer, recording, time, kind) WHERE recording != '';
+CREATE INDEX exchanges ON entries (reducer, time) WHERE kind = 'exchange';
+""",
 )
 """What makes the tables of each version out of those of the one before."""
 
@@ -84,6 +110,7 @@ class Ledger:
             self._file = sqlite3.connect(path, timeout=PATIENCE, isolation_level=None)
         try:
             with self._explained("opened"):
+                self._file.execute(f"PRAGMA page_size = {_PAGE}")
                 self._file.execute("PRAGMA journal_mode = WAL")
                 self._file.execute("PRAGMA synchronous = FULL")
                 self._set_up()
@@ -120,8 +147,10 @@ class Ledger:
         with self._explained("written"), self._transaction():
             self._file.execute("INSERT OR IGNORE INTO reducers (serial, joint) VALUES (?, ?)", reducer)
             self._file.execute(
-                "INSERT OR REPLACE INTO entries (reducer, joint, time, kind, recording, content) "
-                "SELECT id, ?, ?, ?, ?, ? FROM reducers WHERE serial = ? AND joint = ?",
+                "INSERT OR REPLACE INTO entries (id, reducer, joint, time, kind, recording, content) "
+                f"SELECT 1 + MAX(own.id << {_REDUCER_BITS}, COALESCE((SELECT MAX(id) FROM entries "
+                f"WHERE id < (own.id + 1) << {_REDUCER_BITS}), 0)), own.id, ?, ?, ?, ?, ? "
+                "FROM reducers AS own WHERE serial = ? AND joint = ?",
                 (entry.joint, entry.time, entry.kind.value, entry.recording, content, *reducer),
             )
 
@@ -132,10 +161,11 @@ class Ledger:
 
     # Reading ---------------------------------------------------------------------------------------------------------
 
-    def reducers(self) -> list[Reducer]:
-        """Return every reducer, by serial number, then by joint."""
+    def reducers(self, serial: str | None = None) -> list[Reducer]:
+        """Return every reducer, or those of one serial number, by serial number, then by joint."""
+        query = "SELECT serial, joint FROM reducers WHERE serial = COALESCE(?, serial) ORDER BY serial, joint"
         with self._explained("read"):
-            rows = self._file.execute("SELECT serial, joint FROM reducers ORDER BY serial, joint").fetchall()
+            rows = self._file.execute(query, (serial,)).fetchall()
         return [Reducer(*row) for row in rows]
 
     def entries(self, serial: str, joint: str = "", *, newest: int | None = None) -> list[Entry]:

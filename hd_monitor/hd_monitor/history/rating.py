@@ -14,7 +14,7 @@ from ..orders.rms_curve import SpeedBin
 from ..settings.groups import DiagnosisSettings
 from .entry import Entry, Kind
 from .property_curves import property_curves
-from .series import Motion, baseline_entries, lines_of, repeated_motion, series_of
+from .series import Motion, baseline_entries, comparable_entries, lines_of, repeated_motion, series_of
 from .trend import Mean, weighted_mean
 
 CHANCE = 1e-3
@@ -46,16 +46,18 @@ class Baseline(NamedTuple):
 
 def baseline_of(entries: Sequence[Entry]) -> Baseline | None:
     """Return the first pair in the baseline; None as long as it is neither set nor complete."""
-    found = {series.name: series for series in series_of(entries)}
+    base = baseline_entries(entries)
     is_set = any(entry.kind is Kind.BASELINE for entry in entries)
+    if not base or (base[-1] is comparable_entries(entries)[-1] and not is_set):
+        return None
+    found = {series.name: series for series in series_of(base)}
     lines = {}
     for component, name in _NAMES.items():
-        series = found.get(f"{name} line 1")
-        if series is None or not series.is_baseline.any() or (series.is_baseline.all() and not is_set):
+        if (series := found.get(f"{name} line 1")) is None:
             return None
-        lines[component] = weighted_mean(series.values[series.is_baseline], series.stds[series.is_baseline])
+        lines[component] = weighted_mean(series.values, series.stds)
     curve, _ = property_curves(entries)
-    return Baseline(lines, repeated_motion(baseline_entries(entries)), curve)
+    return Baseline(lines, repeated_motion(base), curve)
 
 
 def rated(

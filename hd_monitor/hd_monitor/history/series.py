@@ -186,7 +186,16 @@ def lines_of(
     again = _is_repetition(evidence, repeated)
     for k in sorted({piece.k for piece in evidence}):
         pieces = [piece for piece in evidence if piece.k == k]
-        amplitude = np.mean([piece.amplitude for piece in pieces], axis=0)
-        skirts = np.fmax([piece.floor if again else 1.0 for piece in pieces], 1.0)
-        std = np.sqrt((np.square([piece.std for piece in pieces]).T / skirts).sum(axis=1)) / len(pieces)
-        yield LineEstimate(k=k, amplitude=LinePair(*amplitude.tolist()), std=LinePair(*std.tolist()))
+        count = len(pieces)
+        skirts = [max(1.0, piece.floor) if again else 1.0 for piece in pieces]  # 1 where the floor is NaN, too
+        sizes, stds = (zip(*(getattr(piece, name) for piece in pieces), strict=True) for name in ("amplitude", "std"))
+        yield LineEstimate(
+            k=k,
+            amplitude=LinePair(*(math.fsum(own) / count for own in sizes)),
+            std=LinePair(
+                *(
+                    math.sqrt(sum(std**2 / skirt for std, skirt in zip(own, skirts, strict=True))) / count
+                    for own in stds
+                )
+            ),
+        )

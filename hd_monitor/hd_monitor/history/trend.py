@@ -66,7 +66,7 @@ def change_of(series: Series) -> Change | None:
 
 def slope_of(series: Series) -> Slope | None:
     """Fit a steady change to all values; None where the data bear none, or a step accounts for it better."""
-    if series.values.size < FEWEST or float(np.ptp(series.times)) <= 0.0:
+    if not _has_a_course(series):
         return None
     by_time = _line(series.times / _DAY, series.values, series.stds)
     p_value = float(2.0 * t_distribution.sf(abs(by_time.slope) / by_time.slope_std, series.values.size - 2))
@@ -81,9 +81,9 @@ def slope_of(series: Series) -> Slope | None:
 
 def step_of(series: Series) -> Step | None:
     """Look for one sudden change; None where noise makes one as large somewhere, or a steady change explains it."""
-    count = series.values.size
-    if count < FEWEST:
+    if not _has_a_course(series):
         return None
+    count = series.values.size
     place = np.arange(2, count - 1)
     before, after = _sides(series, place)
     change, std = after.mean - before.mean, np.hypot(before.std, after.std)
@@ -94,6 +94,11 @@ def step_of(series: Series) -> Step | None:
     if chances[best] >= STEP_SIGNIFICANT or before.left[best] + after.left[best] + _BETTER >= steady:
         return None
     return Step(float(series.times[place[best]]), float(change[best]), float(std[best]), float(chances[best]))
+
+
+def _has_a_course(series: Series) -> bool:
+    """Whether there are enough values, not all of one time."""
+    return series.values.size >= FEWEST and float(np.ptp(series.times)) > 0.0
 
 
 class _Side(NamedTuple):

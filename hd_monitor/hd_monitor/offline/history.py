@@ -120,10 +120,9 @@ def read_histories(ledger: Ledger, serial: str | None = None) -> list[ReducerHis
     BagError
         If the ledger knows nothing, or not this serial number.
     """
-    known = ledger.reducers()
-    chosen = [reducer for reducer in known if serial is None or reducer.serial == serial]
+    chosen = ledger.reducers(serial)
     if not chosen:
-        names = ", ".join(map(str, known)) or "no reducer yet"
+        names = ", ".join(map(str, ledger.reducers())) or "no reducer yet"
         raise BagError(f"{ledger.path} has nothing on {serial or 'any reducer'}; it knows {names}")
     return [_history(reducer, ledger.entries(*reducer)) for reducer in chosen]
 

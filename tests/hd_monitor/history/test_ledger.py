@@ -1,3 +1,4 @@
+import json
 import os
 import resource
 import signal
@@ -5,6 +6,7 @@ import sqlite3
 import subprocess
 import sys
 import threading
+from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,7 +14,7 @@ import pytest
 from tests.hd_monitor.history.entries import direction, entry
 
 from hd_monitor.history.entry import Kind
-from hd_monitor.history.ledger import Ledger, LedgerError
+from hd_monitor.history.ledger import _SCHEMA, VERSION, Ledger, LedgerError
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -129,16 +131,40 @@ def test_a_newer_schema_is_refused(path):
         Ledger(path)
 
 
-def test_an_older_schema_is_brought_up_to_date(path):
+@pytest.mark.parametrize("version", [1, 2])
+def test_an_older_schema_is_brought_up_to_date(path, version):
+    content = json.dumps(entry().content())
+    rows = [
+        ("evidence", 1, 1.0),
+        ("evidence", 2, 1.0),
+        ("exchange", 1, 1.0),
+        ("evidence", 1, 1.0),
+        ("evidence", 2, 2.0),
+    ]
+    with closing(sqlite3.connect(path)) as file, file:
+        file.executescript("".join(_SCHEMA[:version]) + f"PRAGMA user_version = {version};")
+        file.execute("INSERT INTO reducers VALUES (1, 'S1', ''), (2, 'S2', '')")
+        file.executemany(
+            "INSERT INTO entries (kind, reducer, time, joint, recording, content) VALUES (?, ?, ?, 'arm', '', ?)",
+            [(*row, content) for row in rows],
+        )
     with Ledger(path) as ledger:
-        ledger.append(entry())
-        ledger._file.execute("DROP INDEX exchanges")
-        ledger._file.execute("PRAGMA user_version = 1")
+        assert ledger._file.execute("PRAGMA user_version").fetchone() == (VERSION,)
+        assert len(ledger.entries("S1")) == 1  # of the new one: the order within a second is kept
+        assert [found.time for found in ledger.entries("S2")] == [1.0, 2.0]
+        indexes = ledger._file.execute("SELECT name FROM sqlite_master WHERE type = 'index' AND tbl_name = 'entries'")
+        assert {name for (name,) in indexes} == {"by_time", "one_of_a_recording", "exchanges"}
+        ledger.append(entry(time=1.0))
+        assert len(ledger.entries("S1")) == 2
+
+
+def test_the_entries_of_a_reducer_lie_together(path):
     with Ledger(path) as ledger:
-        assert ledger._file.execute("PRAGMA user_version").fetchone() == (2,)
-        plan = ledger._file.execute("SELECT name FROM sqlite_master WHERE type = 'index'").fetchall()
-        assert ("exchanges",) in plan
-        assert repr(ledger.latest("S1")) == repr(entry())
+        for turn in range(40):
+            for serial in ("S1", "S2", "S3"):
+                ledger.append(entry(serial=serial, time=float(turn)))
+        rows = ledger._file.execute("SELECT reducer FROM entries ORDER BY rowid").fetchall()
+    assert rows == sorted(rows)
 
 
 def test_other_files_are_refused_and_left_as_they_are(path, tmp_path):
@@ -191,7 +217,7 @@ def test_killed_at_any_moment_it_keeps_every_entry_that_was_written(path):
 
 def test_a_full_disk_costs_the_entry_and_nothing_else(path):
     def little_room():
-        resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))
+        resource.setrlimit(resource.RLIMIT_FSIZE, (800_000, 800_000))
         signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 
     with writer(path, preexec_fn=little_room) as process:

@@ -1,4 +1,5 @@
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -86,6 +87,12 @@ def test_a_steady_change_is_no_step():
     values = series(noisy(20, 3, slope=0.03))
     assert step_of(values) is None
     assert slope_of(values) is not None
+
+
+def test_values_of_one_time_have_neither_slope_nor_step():
+    at_once = replace(series([1.0, 1.0, 1.0, 1.3, 1.3, 1.3]), times=np.full(6, DAY))
+    assert slope_of(at_once) is None
+    assert step_of(at_once) is None
 
 
 @pytest.mark.parametrize("scatter", [1.0, 3.0])
