@@ -45,8 +45,8 @@ def start_watch(path: Path, complaints: list[str]) -> Callable[..., JointWatch]:
     return start
 
 
-def swing(watch: JointWatch, start: float, seconds: float, line: float = 0.3) -> None:
-    """Let the joint swing; the circular spline's line is in its effort."""
+def swinging(start: float, seconds: float, line: float = 0.3) -> list[bytes]:
+    """Return joint states of a swinging joint, 100 a second; the circular spline's line is in its effort."""
     from rclpy.serialization import serialize_message
     from sensor_msgs.msg import JointState
 
@@ -61,6 +61,12 @@ def swing(watch: JointWatch, start: float, seconds: float, line: float = 0.3) ->
         message.header.stamp.sec = int(start + at)
         message.header.stamp.nanosec = round((start + at) % 1 * SECOND)
         messages.append(serialize_message(message))
+    return messages
+
+
+def swing(watch: JointWatch, start: float, seconds: float, line: float = 0.3) -> None:
+    """Let the joint swing."""
+    messages = swinging(start, seconds, line)
     for first in range(0, len(messages), 100):
         watch.feed({Quantity.MOTION: messages[first : first + 100]}, round((1.0 + first / 100) * SECOND))
 
