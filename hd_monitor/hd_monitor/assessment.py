@@ -1,15 +1,17 @@
 """What a monitor says at one time: the verdict and everything behind it."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from .acquisition.quality import Quality
 from .acquisition.record import JointSamples, Record, join_records
+from .change import Growth
 from .contract import NANOSECONDS
 from .diagnosis.inputs import InputState
-from .diagnosis.verdict import Verdict
+from .diagnosis.verdict import Component, Verdict
 from .identification.result import Identification
 from .orders.rms_curve import SpeedBin
 from .orders.zoom import ZoomSpectrum, zoom_spectrum
@@ -44,6 +46,8 @@ class Assessment:
         RMS [m/s²] by speed, since the start, or since the baseline was set.
     rms_growth : float
         Of the RMS against the baseline's at the same speeds, as a fraction; NaN without one.
+    line_growth : mapping
+        Of each spline's first line against the baseline's; nothing without one, and where the indexes are absolute.
     quality : Quality
         Counters of what came in, since the start.
     speed : float
@@ -73,6 +77,7 @@ class Assessment:
     steady_parts: tuple[Record, ...]
     rms_curve: tuple[SpeedBin, ...]
     rms_growth: float
+    line_growth: Mapping[Component, Growth]
     quality: Quality
     speed: float
     rms: float

@@ -47,6 +47,13 @@ class Change(NamedTuple):
         return self._asdict() | {"change": self.change, "change_std": self.std, "significant": self.significant}
 
 
+class Growth(NamedTuple):
+    """By how much a value has grown, as a fraction."""
+
+    value: float
+    std: float
+
+
 def chance_of(change: float, std: float) -> float:
     """Return the probability of so large a normally distributed difference without a change."""
     return float(2.0 * norm.sf(abs(change) / std)) if std > 0.0 else float(change == 0.0)

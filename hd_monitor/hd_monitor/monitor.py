@@ -20,7 +20,7 @@ from .diagnosis.inputs import InputState, describe_inputs, describe_silence
 from .diagnosis.judge import Judge
 from .diagnosis.verdict import FaultCode, Verdict
 from .evidence import Evidence
-from .history.rating import Baseline, rated
+from .history.rating import Baseline, growth_of, rated
 from .identification.identifier import Identifier
 from .identification.sensorless.identifier import SensorlessIdentifier
 from .orders.rms_curve import rms_growth
@@ -245,6 +245,7 @@ class Monitor:
             steady_parts=evidence.steady_parts,
             rms_curve=curve,
             rms_growth=rms_growth(curve, base, self.settings.analysis.rms_bin_width),
+            line_growth=growth_of(evidence.identification, self.baseline),
             quality=quality,
             speed=evidence.speed(assembled) if assembled is not None else math.nan,
             rms=evidence.level(assembled) if assembled is not None else math.nan,

@@ -10,6 +10,7 @@ import pytest
 
 from hd_monitor import contract
 from hd_monitor.assessment import Assessment
+from hd_monitor.change import Growth
 from hd_monitor.diagnosis.inputs import InputCode
 from hd_monitor.diagnosis.status import Status, input_status_of, status_of
 from hd_monitor.diagnosis.verdict import Component, FaultCode
@@ -63,7 +64,8 @@ def everything_known() -> Assessment:
 
 def relative(assessment: Assessment) -> Assessment:
     assert assessment.identification is not None
-    return replace(assessment, identification=replace(assessment.identification, relative=True))
+    growth = {part: Growth(0.1, 0.01) for part in (Component.CIRCULAR_SPLINE, Component.FLEXSPLINE)}
+    return replace(assessment, identification=replace(assessment.identification, relative=True), line_growth=growth)
 
 
 def keys_of(status: Status) -> list[str]:
@@ -73,9 +75,10 @@ def keys_of(status: Status) -> list[str]:
 def test_every_key_of_a_status_is_documented_in_its_order() -> None:
     assert keys_of(input_status_of(everything_known(), "joint")) == documented_keys("input")
     documented, known = documented_keys("reducer"), everything_known()
-    for assessment, other in ((known, "share (%)"), (relative(known), "index (%)")):
+    for assessment, others in ((known, ("share", "line growth")), (relative(known), ("index",))):
         keys = keys_of(status_of(assessment, "joint"))
-        expected = [key for key in documented if not key.endswith((other, other.replace(" (", " std (")))]
+        left_out = tuple(f" {other}{std} (%)" for other in others for std in ("", " std"))
+        expected = [key for key in documented if not key.endswith(left_out)]
         assert sorted(keys) == sorted(expected)
         assert [key for key in keys if "std" not in key] == [key for key in expected if "std" not in key]
 

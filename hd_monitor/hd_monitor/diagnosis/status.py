@@ -1,13 +1,16 @@
 """An assessment as two diagnostic statuses, the reducer's and its inputs'; the same for node, replay and report."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from ..assessment import Assessment
+from ..change import Growth
 from ..identification.result import Identification
 from ..reducer import LinePair
 from .something_else import describe_all_else
 from .uncertain import decimals, significant
+from .verdict import Component
 
 LONGEST_MESSAGE = 128
 """Characters of a string that ``ros2 topic echo`` shows before it truncates."""
@@ -68,6 +71,7 @@ def status_of(assessment: Assessment, joint: str) -> Status:
         ("evidence age (s)", _number(assessment.evidence_age, 0)),
         *_indexes(found),
         *_errors(found),
+        *_growths(assessment.line_growth),
         ("index kind", index_kind),
         ("warn limit (%)", _number(100.0 * limits.warn_index)),
         ("error limit (%)", _number(100.0 * limits.error_index)),
@@ -153,6 +157,15 @@ def _errors(found: Identification) -> list[tuple[str, str | None]]:
     if found.transmission_error is None or found.transmission_error_std is None:
         return []
     return _pairs("transmission error%s (arcmin)", found.transmission_error, found.transmission_error_std)
+
+
+def _growths(growth: Mapping[Component, Growth]) -> list[tuple[str, str | None]]:
+    """Growth of each spline's line, where there is a baseline."""
+    if not growth:
+        return []
+    sides = (growth[part] for part in (Component.CIRCULAR_SPLINE, Component.FLEXSPLINE))
+    values, stds = (LinePair(*(100.0 * number for number in column)) for column in zip(*sides, strict=True))
+    return _pairs("line growth%s (%%)", values, stds)
 
 
 def _pairs(key: str, values: LinePair, stds: LinePair) -> list[tuple[str, str | None]]:

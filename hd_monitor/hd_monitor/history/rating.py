@@ -1,11 +1,12 @@
 """Without a torque a line's size says nothing; its growth against the baseline does."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import NamedTuple
 
 from scipy.stats import norm
 
+from ..change import Growth
 from ..diagnosis.uncertain import with_std
 from ..diagnosis.verdict import Cause, Component, FaultCode, Level, Verdict
 from ..identification.result import Identification
@@ -67,33 +68,40 @@ def rated(
 
     Absolute verdicts stay as they are, and so do those on data that say nothing of growth.
     """
-    if baseline is None or found is None or not found.relative or not _may_be_rated(verdict, found):
-        return verdict
-    growth = _growth(found, baseline)
-    if growth is None:
+    growth = growth_of(found, baseline)
+    if not growth or found is None or not _may_be_rated(verdict, found):
         return verdict
     told = ", ".join(
         f"{_NAMES[part]} {with_std(100 * size, 100 * std, sign='+')} %" for part, (size, std) in growth.items()
     )
     told += f" against the baseline, warn limit {100 * limits.warn_growth:g} %"
     surely = float(norm.isf(CHANCE))
-    grown = {part: size for part, (size, std) in growth.items() if size >= limits.warn_growth and size > surely * std}
-    if not grown:
+    grown = {part: size for part, (size, std) in growth.items() if size > surely * std}
+    beyond = {part: size for part, size in grown.items() if size >= limits.warn_growth}
+    if not beyond:
         if max(std for _, std in growth.values()) * surely > limits.warn_growth:
             return verdict  # such a growth could have been missed
+        said = f"{_who(grown)} grown, by less than the warn limit" if grown else "Neither spline's line has grown"
         return Verdict(
             component=Component.NONE,
             level=Level.OK,
             fault_code=FaultCode.OK,
-            reason=f"Neither spline's line has grown ({told})",
+            reason=f"{said} ({told})",
             cause=Cause.RELATIVE,
         )
-    largest = max(grown, key=lambda part: grown[part])
-    both = len(grown) == 2 and min(grown.values()) >= limits.both_ratio * grown[largest]
-    level = Level.ERROR if grown[largest] >= limits.error_growth else Level.WARN
-    who = "Both splines' lines have" if both else f"The {_NAMES[largest]}'s line has"
+    largest = max(beyond, key=lambda part: beyond[part])
+    both = len(beyond) == 2 and min(beyond.values()) >= limits.both_ratio * beyond[largest]
+    level = Level.ERROR if beyond[largest] >= limits.error_growth else Level.WARN
+    named = tuple(beyond) if both else (largest,)
     part = Component.BOTH if both else largest
-    return Verdict.naming(part, level, f"{who} grown ({told})", Cause.RELATIVE, rated=True)
+    return Verdict.naming(part, level, f"{_who(named)} grown ({told})", Cause.RELATIVE, rated=True)
+
+
+def _who(parts: Collection[Component]) -> str:
+    if len(parts) == 2:
+        return "Both splines' lines have"
+    (part,) = parts
+    return f"The {_NAMES[part]}'s line has"
 
 
 def _may_be_rated(verdict: Verdict, found: Identification) -> bool:
@@ -104,15 +112,17 @@ def _may_be_rated(verdict: Verdict, found: Identification) -> bool:
     return unnamed and bool(codes) and codes <= _NO_NAME
 
 
-def _growth(found: Identification, baseline: Baseline) -> dict[Component, tuple[float, float]] | None:
-    """Growth of each spline's first line as a fraction, and its standard deviation; None without lines."""
+def growth_of(found: Identification | None, baseline: Baseline | None) -> dict[Component, Growth]:
+    """Return the growth of each spline's first line; nothing without a baseline, and where the indexes are absolute."""
+    if found is None or baseline is None or not found.relative:
+        return {}
     line = next((line for line in lines_of(found.lines, found.evidence, baseline.motion) if line.k == 1), None)
     if line is None:
-        return None
+        return {}
     growth = {}
     larger = max(base.value for base in baseline.lines.values())
     for part, base in baseline.lines.items():
         amplitude, std = (getattr(pair, part.value) for pair in (line.amplitude, line.std))
         size = max(base.value, SMALLEST * larger)
-        growth[part] = (amplitude - base.value) / size, math.hypot(std * base.widened, base.std) / size
+        growth[part] = Growth((amplitude - base.value) / size, math.hypot(std * base.widened, base.std) / size)
     return growth

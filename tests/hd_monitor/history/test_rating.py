@@ -1,3 +1,4 @@
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -6,7 +7,7 @@ from tests.hd_monitor.history.entries import direction, entry
 
 from hd_monitor.diagnosis.verdict import Cause, Component, FaultCode, Level, Verdict
 from hd_monitor.history.entry import Kind
-from hd_monitor.history.rating import Baseline, baseline_of, rated
+from hd_monitor.history.rating import Baseline, baseline_of, growth_of, rated
 from hd_monitor.history.trend import Mean
 from hd_monitor.identification.result import Identification
 from hd_monitor.limitation import LimitationCode, blocker
@@ -64,6 +65,28 @@ def test_the_reason_says_how_much_and_how_surely():
         "warn limit 30 %)"
     )
     assert "Neither spline's line has grown" in rated(NAMED, found(), BASE, LIMITS).reason
+
+
+@pytest.mark.parametrize(
+    ("cs", "fs", "said"),
+    [
+        (2.0, 1.25, "The flexspline's line has grown, by less than the warn limit ("),
+        (2.4, 1.0, "The circular spline's line has grown, by less than the warn limit ("),
+        (2.4, 1.25, "Both splines' lines have grown, by less than the warn limit ("),
+        (2.0, 1.05, "Neither spline's line has grown ("),
+    ],
+)
+def test_growth_below_the_limit_is_said_where_it_is_significant(cs, fs, said):
+    verdict = rated(NAMED, found(cs, fs), BASE, LIMITS)
+    assert (verdict.component, verdict.level, verdict.fault_code) == (Component.NONE, Level.OK, FaultCode.OK)
+    assert verdict.reason.startswith(said)
+
+
+def test_the_growth_is_known_as_a_number_where_it_is_rated():
+    growth = growth_of(found(2.0, 1.5), BASE)
+    assert growth[Component.FLEXSPLINE].value == pytest.approx(0.5)
+    assert growth[Component.FLEXSPLINE].std == pytest.approx(math.hypot(0.05 / math.sqrt(2.0), 0.02))
+    assert growth_of(found(relative=False), BASE) == growth_of(None, BASE) == growth_of(found(), None) == {}
 
 
 def test_growth_within_the_repeatability_is_none():
