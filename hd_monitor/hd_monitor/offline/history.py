@@ -10,6 +10,7 @@ from typing import Any
 
 from .. import __version__
 from ..change import SIGNIFICANT, Change
+from ..diagnosis.uncertain import with_std
 from ..diagnosis.verdict import Verdict
 from ..history.entry import Entry, Kind
 from ..history.ledger import Ledger, Reducer
@@ -34,6 +35,11 @@ _POINT = {
 }
 """Keys of a value in JSON, and the columns of a series that they are of."""
 
+_UNITS = {"arcmin": (1.0, "′", "′"), "fraction": (100.0, " %", " points")}
+"""How readings of a unit are shown: factor, and the unit of a value and of a difference."""
+
+_PLAIN = (1.0, "", "")
+
 _DECADES = ((365.25, "years"), (30.4, "months"), (1.0, "days"), (1.0 / 24.0, "hours"))
 
 
@@ -49,24 +55,40 @@ class Reading:
     @property
     def remarks(self) -> list[str]:
         """What is worth saying, in sentences; nothing where nothing changed."""
-        name, unit, said = self.series.name, self.series.unit, []
-        if self.change is not None and self.change.significant:
+        name, said = self.series.name, []
+        if (change := self.change) is not None and change.significant:
             said.append(
-                f"{name}: {_shown(self.change.before, unit)} in the baseline, {_shown(self.change.after, unit)} now "
-                f"(changed by {_shown(self.change.change, unit)} ± {_shown(self.change.std, unit)})"
+                f"{name}: {self._value(change.before, change.before_std)} in the baseline, "
+                f"{self._value(change.after, change.after_std)} now (changed by "
+                f"{self._difference(change.change, change.std)})"
             )
         if self.step is not None:
             said.append(
-                f"{name}: changed in one step by {_shown(self.step.change, unit)} ± {_shown(self.step.std, unit)} "
-                f"before {date(self.step.time)}; if the reducer was exchanged or adjusted then, mark it"
+                f"{name}: changed in one step by {self._difference(self.step.change, self.step.std)} before "
+                f"{date(self.step.time)}; if the reducer was exchanged or adjusted then, mark it"
             )
         if self.slope is not None:
             ahead = self.slope.days_to_limit
             said.append(
-                f"{name}: changes by {_shown(self.slope.per_day, unit)} ± {_shown(self.slope.per_day_std, unit)} a day"
+                f"{name}: changes by {self._difference(self.slope.per_day, self.slope.per_day_std)} a day"
                 + (f"; the limit is {_duration(ahead)} away if that goes on" if ahead else "")
             )
         return said
+
+    @property
+    def newest(self) -> str:
+        """The newest value, and by how much it differs from the baseline's."""
+        text = self._value(float(self.series.values[-1]), float(self.series.stds[-1]))
+        change = self.change
+        return text + (f", changed by {self._difference(change.change, change.std)}" if change else "")
+
+    def _value(self, value: float, std: float) -> str:
+        scale, unit, _ = _UNITS.get(self.series.unit, _PLAIN)
+        return f"{with_std(scale * value, scale * std)}{unit}"
+
+    def _difference(self, value: float, std: float) -> str:
+        scale, _, unit = _UNITS.get(self.series.unit, _PLAIN)
+        return f"{with_std(scale * value, scale * std)}{unit}"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -233,12 +255,7 @@ def table(histories: Sequence[ReducerHistory]) -> str:
         place = f", {history.joint}" if history.reducer.serial and history.joint else ""
         lines.append(f"{history.reducer}{place}: {shown} ({history.seen})")
         lines.append(f"  {len(history.entries)} entries over {turns:.0f} revolutions of the wave generator")
-        for reading in history.readings:
-            series = reading.series
-            value, std = (_shown(float(column[-1]), series.unit) for column in (series.values, series.stds))
-            change = f", changed by {_shown(reading.change.change, series.unit)}" if reading.change else ""
-            spread = f" ± {_shown(reading.change.std, series.unit)}" if reading.change else ""
-            lines.append(f"  {series.name}: {value} ± {std}{change}{spread}")
+        lines += [f"  {reading.series.name}: {reading.newest}" for reading in history.readings]
         lines += [f"  {remark}" for remark in history.remarks]
     return "\n".join(lines)
 
@@ -246,14 +263,6 @@ def table(histories: Sequence[ReducerHistory]) -> str:
 def date(time: float) -> str:
     """Write a time [s since 1970] to the minute, in UTC."""
     return datetime.fromtimestamp(time, UTC).strftime("%Y-%m-%d %H:%M")
-
-
-def _shown(value: float, unit: str) -> str:
-    if unit == "arcmin":
-        return f"{value:.3g}′"
-    if unit == "fraction":
-        return f"{100.0 * value:.3g} %"
-    return f"{value:.3g}"
 
 
 def _duration(interval: tuple[float, float]) -> str:

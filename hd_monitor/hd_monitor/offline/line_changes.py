@@ -8,6 +8,7 @@ import numpy as np
 from scipy.stats import t as t_distribution
 
 from ..change import SIGNIFICANT, Change, chance_of
+from ..diagnosis.uncertain import with_std
 
 SPLINES = ("circular_spline", "flexspline")
 
@@ -80,21 +81,21 @@ def describe_lines(lines: LineChanges, ratio: Change | None) -> Iterator[str]:
     for (k, spline), change in changed.items():
         verb = "grew" if change.after > change.before else "fell"
         by = f" by {100.0 * abs(change.after / change.before - 1.0):.0f} %" if change.before > NOTHING else ""
-        old, new = f"{change.before:.3g} ± {change.before_std:.1g}", f"{change.after:.3g} ± {change.after_std:.1g}"
+        old, new = with_std(change.before, change.before_std), with_std(change.after, change.after_std)
         name = f"{spline.replace('_', ' ')}'s line k = {k}"
         yield f"The {name} {verb}{by}: {old} before, {new} after (p {_p(change.p_value)})."
     if lines and not changed:
         yield "No line changed significantly."
     if ratio is not None and ratio.significant:
         yield (
-            f"The flexspline's first line went from {ratio.before:.3g} ± {ratio.before_std:.1g} to {ratio.after:.3g} ± "
-            f"{ratio.after_std:.1g} times the circular spline's (p {_p(ratio.p_value)})."
+            f"The flexspline's first line went from {with_std(ratio.before, ratio.before_std)} to "
+            f"{with_std(ratio.after, ratio.after_std)} times the circular spline's (p {_p(ratio.p_value)})."
         )
 
 
 def describe_curve(change: CurveChange) -> str:
     """Say how the vibration changed over all speeds."""
-    percent = f"{100.0 * change.ratio:.0f} ± {100.0 * change.ratio_std:.1g} %"
+    percent = f"{with_std(100.0 * change.ratio, 100.0 * change.ratio_std)} %"
     if change.p_value >= SIGNIFICANT:
         return f"Over {change.speeds} common speeds the vibration did not change significantly ({percent} of before)."
     return f"Over {change.speeds} common speeds the vibration is {percent} of before (p {_p(change.p_value)})."

@@ -58,7 +58,7 @@ def test_the_table_says_what_changed_and_when_the_limit_is_reached(
     text = capsys.readouterr().out
     assert "BAD, arm: WARN, flexspline (2023-12-03 22:13 UTC)" in text
     assert "20 entries over 40000 revolutions of the wave generator" in text
-    said = re.findall(r"flexspline index: changes by 0\.\d+ % ± \S+ % a day; the limit is (\S+) to (\S+) days", text)
+    said = re.findall(r"flexspline index: changes by 0\.\d+ ± \S+ points a day; the limit is (\S+) to (\S+) days", text)
     low, high = map(float, said[0])
     assert low < (0.08 - 0.03 - 19 * 0.002) / 0.002 < high
     good = text[text.index("GOOD, wrist: OK, none") :]
@@ -103,7 +103,7 @@ def test_the_property_curve_is_compared_with_the_baselines(tmp_path: Path, capsy
     assert [point["rpm"] for point in curves["baseline"]] == list(speeds)
     assert curves["newest"][0]["rms"] == pytest.approx(300.0)
     assert curves["change"]["ratio"] == pytest.approx(0.495, abs=0.003)
-    assert "Over 3 common speeds the vibration is 50 ±" in capsys.readouterr().out
+    assert "Over 3 common speeds the vibration is 49.5" in capsys.readouterr().out
     page = (tmp_path / "report" / "index.html").read_text(encoding="utf-8")
     assert "Before: the baseline; after: the newest motion." in page
 
@@ -147,6 +147,10 @@ def test_the_page_has_a_tile_for_each_reducer_the_worst_first(ledger: Path, tmp_
     assert {title for _, title in tiles} == {"BAD", "GOOD", "NEW", "joint elbow (no serial number)"}
     assert page.count("<polyline") == 6
     assert "the limit is" in page
+    bars = re.findall(r'<div class="bar"><span class="(\w+)"', page)
+    assert bars == ["WARN", "OK", "OK", "OK"]  # BAD and GOOD, the flexspline's index first
+    assert re.search(r"<strong>flexspline index</strong> 6\.\d+ ± 0\.10 %, changed by 3\.\d+ ± 0\.\d+ points", page)
+    assert re.search(r"<strong>flexspline line 1</strong> [\d.]+ ± [\d.]+<", page)
     assert (folder / "BAD_index.png").exists()
 
 

@@ -99,7 +99,7 @@ def test_without_a_sensor_lines_ratio_and_shares_are_compared_with_their_signifi
     assert joint["indexes"][1]["change"] == pytest.approx(0.094, abs=0.002)
     assert joint["indexes"][1]["change_std"] == pytest.approx(0.01 * np.sqrt(2.0))
     text = " ".join(joint["changes"])
-    assert "The flexspline's line k = 1 grew by 30 %: 5 ± 0.1 before, 6.5 ± 0.1 after (p < 0.001)." in text
+    assert "The flexspline's line k = 1 grew by 30 %: 5.00 ± 0.10 before, 6.50 ± 0.10 after (p < 0.001)." in text
     assert "circular spline's line" not in text
 
 

@@ -35,6 +35,5 @@ def readings_plot(title: str, several: Sequence[Series]) -> Figure:
         if is_index:
             limits(axes, several[0].warn, several[0].error)
             axes.set_ylim(bottom=0.0)
-        axes.tick_params(axis="x", labelrotation=20.0)
         legend_above(axes)
         return figure

@@ -46,6 +46,7 @@ _SETTINGS: Any = {
     "axes.titlelocation": "left",
     "axes.titlepad": 10.0,
     "axes.grid": True,
+    "date.converter": "concise",
     "axes.axisbelow": True,
     "axes.spines.top": False,
     "axes.spines.right": False,

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ...diagnosis.verdict import Level
+from ...diagnosis.verdict import Component, Level, Verdict
 from ...history.series import SPLINES, Series
 from ...history.trend import BANDS
 from ..history import Reading, ReducerHistory
@@ -16,7 +16,7 @@ from ..plots.rms_curve import rms_plot
 from ..plots.style import png
 from .page import write_page
 
-_WIDTH, _HEIGHT = 220.0, 44.0
+_WIDTH, _HEIGHT = 288.0, 40.0
 """Size of a sparkline [px]."""
 
 _NEWEST = 120
@@ -37,39 +37,44 @@ def _level(history: ReducerHistory) -> int:
 
 def _section(history: ReducerHistory) -> dict[str, Any]:
     verdict = history.verdict
-    shown = _main(history.readings)
     return {
         "joint": f"{history.reducer.serial or history.joint}",
         "title": str(history.reducer),
-        "place": history.joint,
+        "place": history.joint if history.reducer.serial else "",
         "level": Level(verdict.level).name if verdict else "none",
-        "component": verdict.component.value.replace("_", " ") if verdict else "no verdict yet",
+        "component": _component(verdict),
         "reason": verdict.reason if verdict else "",
         "seen": history.seen,
         "entries": len(history.entries),
-        "bars": [_bar(reading.series) for reading in shown if math.isfinite(reading.series.error)],
-        "sparklines": [_sparkline(reading.series) for reading in shown],
+        "rows": [_row(reading) for reading in _main(history.readings)],
         "remarks": history.remarks,
         "pictures": _pictures(history.readings) | _property_curves(history),
     }
 
 
 def _main(readings: Sequence[Reading]) -> list[Reading]:
-    """Return what a tile shows: both indexes, or without any both first lines."""
-    for kind in ("index", "line 1"):
-        names = {f"{spline.replace('_', ' ')} {kind}" for spline in SPLINES}
-        if found := [reading for reading in readings if reading.series.name in names]:
-            return found
-    return list(readings[:2])
+    """Return what a tile shows: what has limits, or without any both first lines."""
+    limited = [reading for reading in readings if math.isfinite(reading.series.error)]
+    return limited or [reading for reading in readings if reading.series.name.endswith("line 1")]
+
+
+def _component(verdict: Verdict | None) -> str:
+    if verdict is None:
+        return "no verdict yet"
+    return "no part accused" if verdict.component is Component.NONE else verdict.component.value.replace("_", " ")
+
+
+def _row(reading: Reading) -> dict[str, Any]:
+    series = reading.series
+    bar = _bar(series) if math.isfinite(series.error) else None
+    return {"name": series.name, "text": reading.newest, "bar": bar, "spark": _sparkline(series)}
 
 
 def _bar(series: Series) -> dict[str, Any]:
     """Lengths in per cent of a scale that ends at one and a half times the error limit."""
-    scale = 100.0 / (1.5 * series.error)
-    value, std = float(series.values[-1]), float(series.stds[-1])
+    scale, value = 100.0 / (1.5 * series.error), float(series.values[-1])
     return {
-        "name": series.name,
-        "text": f"{100.0 * value:.2f} ± {100.0 * std:.2f} %",
+        "level": Level((value >= series.warn) + (value >= series.error)).name,
         "value": min(value * scale, 100.0),
         "warn": series.warn * scale,
         "error": series.error * scale,
@@ -87,9 +92,10 @@ def _sparkline(series: Series) -> dict[str, Any]:
         down = 2.0 + (_HEIGHT - 4.0) * (top - y) / max(top - bottom, 1e-300)
         return " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(x, down, strict=True))
 
+    line = points(across, values)
     return {
-        "name": series.name,
-        "line": points(across, values),
+        "line": line,
+        "last": line.rpartition(" ")[2].split(","),
         "band": points(np.concatenate([across, across[::-1]]), np.concatenate([high, low[::-1]])),
         "width": _WIDTH,
         "height": _HEIGHT,

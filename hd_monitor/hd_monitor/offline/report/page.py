@@ -8,6 +8,7 @@ from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
+from ...diagnosis.uncertain import with_std
 from ..output import write_folder
 from ..result import JointResult
 from .collector import Collector
@@ -47,6 +48,7 @@ def render(template: str, **values: Any) -> str:
         lstrip_blocks=True,
     )
     environment.filters["data_uri"] = lambda png: "data:image/png;base64," + base64.b64encode(png).decode("ascii")
+    environment.filters["with_std"] = with_std
     return environment.get_template(template).render(values)
 
 
