@@ -51,7 +51,7 @@ def how_bad_in_short(joint: Joint) -> str:
     reading = joint.decisive
     if reading is None:
         return "-"
-    if not reading.error > 0.0:
+    if not reading.limited:
         return f"share {reading.value:.0f} {reading.unit}"
     if reading.value >= reading.error:
         return f"{reading.value / reading.error:.1f} x error"
@@ -64,7 +64,7 @@ def how_bad(joint: Joint) -> str:
     if reading is None:
         return "Not known yet"
     what = f"{_name(reading)} {_amount(reading.value, reading)}"
-    if not reading.error > 0.0:
+    if not reading.limited:
         return f"{what} of the pair; without a torque its size has no limit"
     level, limit = ("error", reading.error) if reading.value >= reading.error else ("warn", reading.warn)
     return f"{what}: {how_bad_in_short(joint).partition(' x')[0]} times the {level} limit of {limit:g} {reading.unit}"
@@ -80,7 +80,7 @@ def how_sure(joint: Joint) -> str:
     reading = joint.decisive
     if reading is None:
         return "Not at all: there is no reading yet"
-    where = f": {standing(reading)}" if reading.error > 0.0 else ""
+    where = f": {standing(reading)}" if reading.limited else ""
     named = "" if joint.component != Component.UNDETERMINED else "; which part is at fault is not known"
     return f"95 % sure of {interval(reading)}{where}{named}" if math.isfinite(reading.std) else "Interval unknown"
 

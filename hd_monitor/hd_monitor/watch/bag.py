@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Protocol
@@ -147,7 +147,8 @@ class _Recorded:
         for key in view.joints:
             for name in NAMES:
                 if topic := topic_of(self._newest, key.node, key.joint, name):
-                    found.append((key, name, curve_from(self._newest[topic], name)))
+                    with suppress(LayoutError):  # another program's topic has the same name
+                        found.append((key, name, curve_from(self._newest[topic], name)))
         return found
 
 

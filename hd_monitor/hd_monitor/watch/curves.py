@@ -9,6 +9,7 @@ from .. import contract
 from ..arrays import FloatArray
 from ..cdr import decode_multi_arrays
 from ..errors import LayoutError
+from .reading import TOO_LARGE
 
 NAMES = (contract.ZOOM_SPECTRUM, contract.RMS_CURVE, contract.RMS_BASELINE)
 
@@ -47,18 +48,19 @@ def curve_from(message: bytes, name: str) -> Curve:
         raise LayoutError(faults[0].reason)
     sizes = tuple(dimension.size for dimension in groups[0].dimensions)
     data = groups[0].data[0]
-    if len(sizes) != 2 or sizes[0] * sizes[1] != data.size:
-        raise LayoutError(f"an array of {name} announces {sizes} but carries {data.size} values")
+    planar = name == contract.ZOOM_SPECTRUM
+    if len(sizes) != 2 or sizes[0] * sizes[1] != data.size or sizes[0 if planar else 1] < 2:
+        raise LayoutError(f"an array of {name} announces {sizes} and carries {data.size} values: no points of a curve")
     table = data.reshape(sizes)
-    return _curve(table.T if name == contract.ZOOM_SPECTRUM else table)  # planes of points, or rows
+    return _curve(table.T if planar else table)
 
 
 def curve_of(x: Sequence[float] | FloatArray, y: Sequence[float] | FloatArray) -> Curve:
-    """Return the points that are finite."""
+    """Return the points that are not damaged."""
     table = np.column_stack([np.asarray(x, dtype=np.float64), np.asarray(y, dtype=np.float64)])
     return _curve(table)
 
 
 def _curve(rows: FloatArray) -> Curve:
-    finite = rows[np.isfinite(rows[:, :2]).all(axis=1)]
-    return Curve(tuple(finite[:, 0].tolist()), tuple(finite[:, 1].tolist()))
+    sound = rows[(np.abs(rows[:, :2]) < TOO_LARGE).all(axis=1)]  # NaN is not
+    return Curve(tuple(sound[:, 0].tolist()), tuple(sound[:, 1].tolist()))

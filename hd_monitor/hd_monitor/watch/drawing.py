@@ -23,7 +23,7 @@ def bars(readings: Sequence[Reading], width: int) -> list[Line]:
     Solid is what the reading surely has, shaded its 95 % interval; a stroke stands at each limit.
     """
     first, room = readings[0], max(width - _NAME - _NUMBERS, 12)
-    limits = [limit for limit in (first.warn, first.error) if limit > 0.0]
+    limits = [first.warn, first.error] if first.limited else []
     ends = [end for reading in readings for end in (reading.value, reading.interval[1]) if math.isfinite(end)]
     top = max(1.25 * max(limits, default=0.0), *ends) if limits else max(100.0, *ends)
     places = [min(round(limit / top * room), room - 1) for limit in limits]
@@ -56,7 +56,7 @@ def _short(where: str) -> str:
 
 
 def _role(reading: Reading) -> str:
-    if not reading.error > 0.0:
+    if not reading.limited:
         return ""
     return "error" if reading.value >= reading.error else "warn" if reading.value >= reading.warn else "ok"
 

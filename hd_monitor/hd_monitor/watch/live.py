@@ -1,6 +1,7 @@
 """The live source: a node of its own that listens to /diagnostics and to the curves of every joint in it."""
 
 import os
+from contextlib import suppress
 from dataclasses import replace
 
 import rclpy
@@ -87,10 +88,8 @@ class LiveSource:
         found = []
         for (key, name), subscription in self._curves.items():
             for message in subscription.drain()[-1:]:
-                try:
+                with suppress(LayoutError):  # another program's topic has the same name
                     found.append((key, name, curve_from(message, name)))
-                except LayoutError:
-                    continue  # not ours: another program's topic has the same name
         return found
 
     def close(self) -> None:

@@ -47,7 +47,7 @@ def _row(joint: Joint, view: View, columns: Mapping[str, int], *, selected: bool
     state = answers.state(joint, view)
     cells = {
         "LEVEL": state,
-        "JOINT": joint.key.joint,
+        "JOINT": _name(joint, view),
         "PART": answers.part(joint),
         "HOW BAD": answers.how_bad_in_short(joint),
         "95 % SURE OF": answers.how_sure_in_short(joint),
@@ -61,6 +61,12 @@ def _row(joint: Joint, view: View, columns: Mapping[str, int], *, selected: bool
     spans = [Span(cut(cells[name], size - 1) + " ", roles.get(name, "")) for name, size in columns.items()]
     marked = [span._replace(role=f"{span.role} selected".strip()) for span in spans] if selected else spans
     return line(">" if selected else " ", *marked)
+
+
+def _name(joint: Joint, view: View) -> str:
+    """The joint's name; behind its node's namespace where there are several nodes."""
+    several = len({key.node for key in view.joints}) > 1
+    return f"{joint.key.node.rpartition('/')[0]}/{joint.key.joint}".lstrip("/") if several else joint.key.joint
 
 
 def _columns(width: int) -> dict[str, int]:

@@ -9,6 +9,9 @@ from ..diagnosis.uncertain import decimals, with_std
 PARTS = ("flexspline", "circular_spline")
 """By the names in ``component``."""
 
+TOO_LARGE = 1e12
+"""Magnitude, in any unit here, from which a number is damaged data."""
+
 _HALF_WIDTH = 1.96  # standard deviations on either side of a 95 % interval
 
 
@@ -44,9 +47,14 @@ class Reading:
         return max(self.value - _HALF_WIDTH * self.std, 0.0), self.value + _HALF_WIDTH * self.std
 
     @property
+    def limited(self) -> bool:
+        """Whether there are limits to compare it with."""
+        return self.warn > 0.0 and self.error > 0.0
+
+    @property
     def severity(self) -> float:
-        """The value over the error limit; NaN without one."""
-        return self.value / self.error if self.error > 0.0 else math.nan
+        """The value over the error limit; NaN without limits."""
+        return self.value / self.error if self.limited else math.nan
 
     @property
     def digits(self) -> int:
@@ -78,9 +86,9 @@ def readings_of(values: Mapping[str, str]) -> tuple[Reading, ...]:
 
 
 def number(values: Mapping[str, str], key: str) -> float:
-    """Read the value of a key; NaN where it is missing, no number, or not finite."""
+    """Read the value of a key; NaN where it is missing, no number, or damaged: not finite or beyond all measure."""
     try:
         value = float(values[key])
     except (KeyError, ValueError):
         return math.nan
-    return value if math.isfinite(value) else math.nan
+    return value if abs(value) < TOO_LARGE else math.nan

@@ -100,7 +100,7 @@ class Joint:
             wanted = [r for r in candidates if (r.quantity == "transmission error") == (cause == "transmission_error")]
             candidates = tuple(wanted) or candidates
         # Shares have no limit, and are compared with each other.
-        return max(candidates, key=lambda r: r.severity if r.error > 0.0 else r.value, default=None)
+        return max(candidates, key=lambda r: r.severity if r.limited else r.value, default=None)
 
     def with_status(self, status: ReceivedStatus, subject: str, stamp: int, now: float) -> Self:
         """Return the joint after a status of its reducer or its input, stamped [ns] and heard at the time `now` [s]."""
@@ -112,7 +112,7 @@ class Joint:
         elif self._said != new._said:
             named = f"{self.level.name}, {self.component.replace('_', ' ')}"
             new = replace(new, since=stamp, before="no verdict" if self.code == FaultCode.WAITING else named)
-        severity = max((r.severity for r in new.readings if r.error > 0.0), default=float("nan"))
+        severity = max((r.severity for r in new.readings if r.limited), default=float("nan"))
         mark = "?" if new.code in _NO_VERDICT else _LETTERS[new.level]
         return replace(new, trail=self.trail.then(Step(stamp, severity, mark)))
 

@@ -72,7 +72,7 @@ def test_a_deviation_that_is_missing_is_not_taken_for_none() -> None:
     assert reading(1.5, math.nan).with_std == "1.5 ± ?"
 
 
-@pytest.mark.parametrize("text", ["", "unknown", "inf", "nan"])
+@pytest.mark.parametrize("text", ["", "unknown", "inf", "nan", "-1e300"])
 def test_what_is_no_number_is_unknown(text: str) -> None:
     assert math.isnan(number({"speed (rpm)": text}, "speed (rpm)"))
     assert math.isnan(number({}, "speed (rpm)"))
