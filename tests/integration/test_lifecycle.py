@@ -1,5 +1,6 @@
 """The node is a managed one that comes up active, and keeps its evidence while it is inactive."""
 
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -124,3 +125,72 @@ def test_the_self_test_answers_with_the_statuses_and_publishes_them(bench: Bench
     ]
     worst = max(status.level for status in answer.status)
     assert (answer.id, answer.passed) == ("A7", bytes([worst == b"\0"]))
+
+
+def test_every_transition_leads_where_it_should(bench: Bench, peer: Any) -> None:
+    bench.monitor("autostart:=false")
+    way = (
+        ("configure", "inactive"),
+        ("cleanup", "unconfigured"),
+        ("configure", "inactive"),
+        ("activate", "active"),
+        ("deactivate", "inactive"),
+        ("activate", "active"),
+        ("deactivate", "inactive"),
+        ("cleanup", "unconfigured"),
+        ("configure", "inactive"),
+        ("activate", "active"),
+    )
+    for label, there in way:
+        assert change_state(peer, NODE, label), label
+        assert state(peer, NODE) == there
+    bench.forget()
+    bench.until(lambda: bench.statuses, "a status at the end of the way")
+
+
+@pytest.mark.parametrize(("way", "last"), [((), "unconfigured"), (("configure",), "inactive")])
+def test_shutdown_from_the_other_states(bench: Bench, peer: Any, way: tuple[str, ...], last: str) -> None:
+    process = bench.monitor("autostart:=false")
+    for label in way:
+        assert change_state(peer, NODE, label)
+    assert state(peer, NODE) == last
+    assert change_state(peer, NODE, "shutdown")
+    assert state(peer, NODE) == "finalized"
+    assert process.interrupt() == 0
+
+
+def test_a_transition_that_makes_no_sense_is_refused(bench: Bench, peer: Any) -> None:
+    bench.monitor()
+    for label in ("configure", "cleanup", "activate"):
+        assert not change_state(peer, NODE, label)
+        assert state(peer, NODE) == "active"
+
+
+def test_a_killed_node_shows_its_verdict_again(bench: Bench, tmp_path: Path) -> None:
+    from .conftest import ERROR, QUICK
+    from .test_verdicts import settled
+
+    given = (f"history.path:={tmp_path / 'ledger.sqlite'}", "reducer.serial:=A7")
+    first = bench.monitor(*given)
+    rig = bench.rig("defect:=flexspline", *QUICK)
+    bench.until_status(lambda s: settled(s) and s.level == ERROR, "a settled verdict")
+    bench.kill(first)
+    bench.stop(rig)
+    bench.forget()
+    bench.monitor(*given)
+    again = bench.until_status(lambda s: True, "a status of the node started anew")
+    assert (again.component, again.level, again.hardware_id) == ("flexspline", ERROR, "A7")
+    assert again.number("evidence age (s)") >= 0
+
+
+def test_two_monitors_side_by_side_share_a_ledger(bench: Bench, tmp_path: Path) -> None:
+    from .conftest import QUICK
+    from .test_verdicts import settled
+
+    path = tmp_path / "ledger.sqlite"
+    watches = [bench.monitor(f"__node->watch_{one}", f"history.path:={path}") for one in "ab"]
+    bench.rig("defect:=circular_spline", "wait_for_subscribers:=2", *(word for word in QUICK if "wait_for" not in word))
+    a = bench.until_status(lambda s: s.name == "/watch_a: joint reducer" and settled(s), "a verdict of the first")
+    b = bench.until_status(lambda s: s.name == "/watch_b: joint reducer" and settled(s), "a verdict of the second")
+    assert (a.component, b.component) == ("circular_spline", "circular_spline")
+    assert not [line for watch in watches for line in watch.output.splitlines() if "the history is not kept" in line]

@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from .conftest import ERROR, OK, QUICK, Bench, Feeder, Shown
+from .conftest import ERROR, OK, QUICK, Bench, Feeder, Shown, feed_until
 from .test_verdicts import settled
 
 pytestmark = pytest.mark.ros
@@ -126,6 +126,15 @@ def test_best_effort_publisher_is_named(bench: Bench, peer: Any) -> None:
         lambda s: "/joint_states best-effort: set input.reliability to best_effort" in s.values["reason"],
         "the incompatible QoS",
     )
+
+
+def test_transient_local_publisher_is_heard(bench: Bench, peer: Any) -> None:
+    from rclpy.qos import QoSDurabilityPolicy, QoSProfile
+
+    feeder = Feeder(peer, qos=QoSProfile(depth=1000, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL))
+    bench.monitor()
+    feed_until(bench, feeder, 1000)
+    assert bench.inputs[-1].fault_code == "HD_INPUT_OK"
 
 
 def test_best_effort_publisher_is_heard_by_best_effort(bench: Bench, peer: Any) -> None:
