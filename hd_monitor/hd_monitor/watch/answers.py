@@ -7,7 +7,7 @@ from .. import contract
 from ..contract import NANOSECONDS
 from ..diagnosis.advice import advise
 from ..diagnosis.verdict import Component, FaultCode, Level
-from .reading import Reading, number
+from .reading import GROWTH, Reading, number
 from .state import Joint, View, seconds_between
 
 _PARTS = {
@@ -52,7 +52,7 @@ def how_bad_in_short(joint: Joint) -> str:
     if reading is None:
         return "-"
     if not reading.limited:
-        return f"share {reading.value:.0f} {reading.unit}"
+        return f"{'grown' if reading.quantity == GROWTH else 'share'} {reading.value:.0f} {reading.unit}"
     if reading.value >= reading.error:
         return f"{reading.value / reading.error:.1f} x error"
     return f"{reading.value / reading.warn:.1f} x warn"
@@ -64,6 +64,8 @@ def how_bad(joint: Joint) -> str:
     if reading is None:
         return "Not known yet"
     what = f"{_name(reading)} {_amount(reading.value, reading)}"
+    if reading.quantity == GROWTH:
+        return f"{what} against the baseline"
     if not reading.limited:
         return f"{what} of the pair; without a torque its size has no limit"
     level, limit = ("error", reading.error) if reading.value >= reading.error else ("warn", reading.warn)
@@ -146,8 +148,8 @@ def missing(joint: Joint, view: View) -> list[str]:
         return [*found, "the reducer's status"]
     if joint.code == FaultCode.WAITING:
         found.append(joint.reducer.message.removeprefix("No verdict yet: "))
-    if joint.values.get("index kind") == "relative":
-        found.append("the torque: without it the lines can only be compared with each other")
+    if joint.values.get("index kind") == "relative" and all(r.quantity != GROWTH for r in joint.readings):
+        found.append("the torque: without it, or a baseline, the lines can only be compared with each other")
     if contract.ZOOM_SPECTRUM not in joint.curves:
         found.append("the spectrum: it comes while the joint turns steadily")
     return [*found, *view.notes]

@@ -12,7 +12,12 @@ from .trail import MARKS, Trail
 
 _EIGHTHS = " ▁▂▃▄▅▆▇█"
 _NAME, _NUMBERS, _WORDS = 21, 30, 12
-_HEADS = {"index": "stiffness index", "share": "share of the pair", "transmission error": "transm. err."}
+_HEADS = {
+    "index": "stiffness index",
+    "share": "share of the pair",
+    "line growth": "line growth",
+    "transmission error": "transm. err.",
+}
 _GUTTER = 9
 _MARK_ROLES = {".": "ok", "W": "warn", "E": "error"}
 

@@ -9,6 +9,9 @@ from ..diagnosis.uncertain import decimals, with_std
 PARTS = ("flexspline", "circular_spline")
 """By the names in ``component``."""
 
+GROWTH = "line growth"
+"""Of a spline's line against its baseline, in place of a limited reading."""
+
 TOO_LARGE = 1e12
 """Magnitude, in any unit here, from which a number is damaged data."""
 
@@ -24,7 +27,7 @@ class Reading:
     part : str
         One of `PARTS`.
     quantity : str
-        ``index``, ``share`` or ``transmission error``, as in the status's keys.
+        ``index``, ``share``, ``line growth`` or ``transmission error``, as in the status's keys.
     unit : str
         ``%`` or ``arcmin``.
     value, std : float
@@ -43,8 +46,9 @@ class Reading:
 
     @property
     def interval(self) -> tuple[float, float]:
-        """The 95 % interval, which does not extend below zero; NaN where the deviation is unknown."""
-        return max(self.value - _HALF_WIDTH * self.std, 0.0), self.value + _HALF_WIDTH * self.std
+        """The 95 % interval; NaN where the deviation is unknown. Only a growth extends below zero."""
+        low, high = (self.value + side * _HALF_WIDTH * self.std for side in (-1.0, 1.0))
+        return low if self.quantity == GROWTH else max(low, 0.0), high
 
     @property
     def limited(self) -> bool:
@@ -68,10 +72,10 @@ class Reading:
 
 
 def readings_of(values: Mapping[str, str]) -> tuple[Reading, ...]:
-    """Find the readings among a reducer status's values: a pair of indexes or shares, and one of errors."""
+    """Find the readings among a reducer status's values: of each kind a pair."""
     found = []
-    for quantity, unit in (("index", "%"), ("share", "%"), ("transmission error", "arcmin")):
-        limited = quantity != "share"
+    for quantity, unit in (("index", "%"), ("share", "%"), (GROWTH, "%"), ("transmission error", "arcmin")):
+        limited = quantity not in ("share", GROWTH)
         warn, error = (
             number(values, f"{level} limit ({unit})") if limited else math.nan for level in ("warn", "error")
         )

@@ -8,7 +8,7 @@ from ..cdr import Diagnostics, ReceivedStatus
 from ..contract import NANOSECONDS
 from ..diagnosis.verdict import Component, FaultCode, Level
 from .curves import Curve
-from .reading import Reading, readings_of
+from .reading import GROWTH, Reading, readings_of
 from .trail import Step, Trail
 
 STALE_AFTER = 5.0
@@ -96,11 +96,15 @@ class Joint:
         candidates = self.readings
         accused = [reading for reading in candidates if reading.part == self.component]
         candidates = tuple(accused) or candidates
-        if (cause := self.values.get("cause")) in ("stiffness", "transmission_error"):
+        if (cause := self.values.get("cause")) in ("stiffness", "transmission_error", "relative"):
             wanted = [r for r in candidates if (r.quantity == "transmission error") == (cause == "transmission_error")]
             candidates = tuple(wanted) or candidates
-        # Shares have no limit, and are compared with each other.
-        return max(candidates, key=lambda r: r.severity if r.limited else r.value, default=None)
+        # Without limits the growth says more than a share, and parts are compared with each other.
+        return max(
+            candidates,
+            key=lambda r: (r.limited, r.quantity == GROWTH, r.severity if r.limited else r.value),
+            default=None,
+        )
 
     def with_status(self, status: ReceivedStatus, subject: str, stamp: int, now: float) -> Self:
         """Return the joint after a status of its reducer or its input, stamped [ns] and heard at the time `now` [s]."""

@@ -104,6 +104,16 @@ def test_parts_that_cannot_be_rated_are_compared_with_each_other() -> None:
     assert "limit of nan" not in text
 
 
+def test_against_a_baseline_the_growth_decides_and_not_the_share() -> None:
+    growth = {"flexspline_line_growth": (43.0, 5.0), "circular_spline_line_growth": (-3.0, 4.0)}
+    shares = {"flexspline_share": (83.1, 2.0), "circular_spline_share": (55.6, 2.0)}
+    text = shown(seen(reducer("elbow", 1, "flexspline", "HD_FLEXSPLINE", "has grown", **growth, **shares), inputs()))
+    assert "grown 43 %" in line_with(">WARN", text)
+    assert "How bad  Flexspline line growth 43.0 % against the baseline" in text
+    assert "How sure 95 % sure of 33.2 to 52.8 %" in text
+    assert "-3.0 ± 4.0" in text  # less than nothing is possible here
+
+
 def six() -> View:
     joints = ["base", "elbow", "shoulder", "wrist_1", "wrist_2", "wrist_3"]
     statuses = [status for joint in joints for status in (sound(joint), inputs(joint))]

@@ -18,7 +18,8 @@ from .statuses import NODE, inputs, reducer, seen, sound
 ELBOW = Key(NODE, "elbow")
 KEYS = [key for key in reducer(
     flexspline_index=(1.0, 0.1), circular_spline_index=(1.0, 0.1), flexspline_share=(1.0, 0.1),
-    flexspline_transmission_error=(1.0, 0.1), circular_spline_transmission_error=(1.0, 0.1),
+    flexspline_line_growth=(1.0, 0.1), flexspline_transmission_error=(1.0, 0.1),
+    circular_spline_transmission_error=(1.0, 0.1),
 ).values if key.endswith(")")] + ["evidence age (s)", "speed (rpm)", "travel (deg)", "misfit"]  # fmt: skip
 numbers = st.one_of(
     st.floats(-1e3, 1e3).map("{:.3f}".format),
