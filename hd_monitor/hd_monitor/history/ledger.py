@@ -21,8 +21,8 @@ PATIENCE = 2.0
 _REDUCER_BITS = 32
 """By which an entry's id begins with its reducer: SQLite lays rows out by id, so that a reducer's lie together."""
 
-_PAGE = 32_768
-"""Bytes that are read at once, some twenty entries; of a new file."""
+_PAGE = 16_384
+"""Bytes that are read at once, about ten entries; of a new file."""
 
 _SCHEMA = (
     """

@@ -217,7 +217,7 @@ def test_killed_at_any_moment_it_keeps_every_entry_that_was_written(path):
 
 def test_a_full_disk_costs_the_entry_and_nothing_else(path):
     def little_room():
-        resource.setrlimit(resource.RLIMIT_FSIZE, (800_000, 800_000))
+        resource.setrlimit(resource.RLIMIT_FSIZE, (400_000, 400_000))
         signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 
     with writer(path, preexec_fn=little_room) as process:
