@@ -1,11 +1,12 @@
 """How well does one health-check move repeat, and is a line that grows by 30 % noticed within one?
 
-    python tests/studies/check_move.py [--sound 1000] [--moves 100] [--with-sensor 10] [--seed 2024]
+    python tests/studies/check_move.py [--sound 1000] [--moves 100] [--with-sensor 10] [--phases 10] [--seed 2024]
 
 From joint states alone, but for a look at the repeatability with a sensor. The rig has the effects of a real drive
 (`drive: catalogue`), and each move other noise. Repeatability is the standard deviation of a reading over moves. The
 first five are the baseline. Each move after them is looked at by itself: a change is noticed where it is significant
-at 1 in 1000, and what a monitor then shows is counted.
+at 1 in 1000, and what a monitor then shows is counted. Last come drives whose lines have random phases, each with a
+baseline of its own.
 """
 
 import argparse
@@ -43,6 +44,7 @@ LINES = {
     "circular_spline.transmission_error": [0.25, 0.08, 0.03],
 }
 """Of a sound drive; the transmission errors [arcmin] are those of `drive: catalogue`."""
+PHASES = [f"{spline}.{name}" for spline in SPLINES for name in ("phase", "transmission_error_phase")]
 GROWTH = 1.3
 LIMITS = MoveLimits(lower=-1.5, upper=1.5, speed=2.0, acceleration=5.0)
 BASE = 5
@@ -122,8 +124,30 @@ def shown(base: Sequence[Entry], moves: Sequence[Driven]) -> Counter[str]:
     """Count what a monitor that knows the baseline shows after each move."""
     baseline = baseline_of([*base, replace(base[-1], time=1e6, kind=Kind.BASELINE, verdict=None)])
     limits = JointSettings.from_mapping(JOINT_STATES).diagnosis
-    verdicts = (rated(move.last.verdict, move.last.identification, baseline, limits) for move in moves)
-    return Counter(f"{verdict.component} {verdict.fault_code}" for verdict in verdicts)
+    verdicts = [rated(move.last.verdict, move.last.identification, baseline, limits) for move in moves]
+    return Counter(f"{verdict.fault_code}, {verdict.reason.partition(' (')[0]}" for verdict in verdicts)
+
+
+def grown_by(spline: str, lines: Mapping[str, Any]) -> dict[str, Any]:
+    """Return lines of which all amplitudes of a spline have grown."""
+    names = {key for key in LINES if spline and key.startswith(spline)}
+    return {key: [GROWTH * size for size in value] if key in names else value for key, value in lines.items()}
+
+
+def with_random_phases(seed: int, drives: int, moves: int = 2) -> Iterator[str]:
+    """Count what is shown of moves with a line grown, on drives whose lines have random phases."""
+    said = {spline: Counter[str]() for spline in SPLINES}
+    rng = np.random.default_rng(seed)
+    for number in range(drives):
+        lines = LINES | {name: rng.uniform(0.0, math.tau, 3).tolist() for name in PHASES}
+        first = seed + 1000 * number
+        base = [drive(first + n, n, **lines).entry for n in range(BASE)]
+        for place, spline in enumerate(SPLINES):
+            numbers = range(first + 100 * (place + 1), first + 100 * (place + 1) + moves)
+            said[spline] += shown(base, [drive(n, BASE, **grown_by(spline, lines)) for n in numbers])
+    yield from (
+        f"random phases, {spline} grown, {count.total()} moves: {dict(count)}" for spline, count in said.items()
+    )
 
 
 def main() -> None:
@@ -133,14 +157,16 @@ def main() -> None:
     parser.add_argument("--moves", type=int, default=100, help="moves with each spline's line grown")
     parser.add_argument("--seed", type=int, default=2024)
     parser.add_argument("--with-sensor", type=int, default=10, help="moves with a sensor on either drive")
+    parser.add_argument("--phases", type=int, default=10, help="drives whose lines have random phases")
     options = parser.parse_args()
     print(*repeatability_with_sensor(options.seed, options.with_sensor), sep="\n", flush=True)
     base = [drive(options.seed + n, n, **LINES).entry for n in range(BASE)]
     cases = {"": options.sound} | dict.fromkeys(SPLINES, options.moves)
     for place, (spline, count) in enumerate(cases.items()):
+        if not count:
+            continue
         first = options.seed + 1_000_000 * (place + 1)
-        grown = {key: [GROWTH * k for k in value] for key, value in LINES.items() if spline and key.startswith(spline)}
-        moves = [drive(first + n, BASE + n, **(LINES | grown)) for n in range(count)]
+        moves = [drive(first + n, BASE + n, **grown_by(spline, LINES)) for n in range(count)]
         if not spline:
             print(*repeatability([*base, *(move.entry for move in moves)]), sep="\n")
         print(f"{spline or 'nothing'} grown, {count} moves")
@@ -154,6 +180,7 @@ def main() -> None:
                 f"{deviation.max():.2f}"
             )
         print(f"  shown: {dict(shown(base, moves))}", flush=True)
+    print(*with_random_phases(options.seed, options.phases), sep="\n")
 
 
 if __name__ == "__main__":
