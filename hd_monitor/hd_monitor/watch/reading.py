@@ -67,8 +67,10 @@ class Reading:
 
     @property
     def with_std(self) -> str:
-        """The value with its standard deviation."""
-        return with_std(self.value, self.std) if math.isfinite(self.std) else f"{self.value:.1f} ± ?"
+        """The value with its standard deviation, to no more than a thousandth: a row has little room."""
+        if math.isnan(self.std):
+            return f"{self.value:.1f} ± ?"
+        return with_std(self.value, self.std) if self.std >= 0.001 else f"{self.value:.3f} ± <0.001"
 
 
 def readings_of(values: Mapping[str, str]) -> tuple[Reading, ...]:

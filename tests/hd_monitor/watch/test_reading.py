@@ -69,6 +69,7 @@ def test_an_interval_has_the_digits_that_its_deviation_leaves(value: float, std:
 
 def test_a_deviation_that_is_missing_is_not_taken_for_none() -> None:
     assert reading(1.5, 0.004).with_std == "1.5000 ± 0.0040"
+    assert reading(1.5, 0.000012).with_std == "1.500 ± <0.001"
     assert reading(1.5, math.nan).with_std == "1.5 ± ?"
 
 
