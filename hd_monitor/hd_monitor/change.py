@@ -3,7 +3,7 @@
 import math
 from typing import Any, NamedTuple
 
-from scipy.stats import norm
+import scipy
 
 SIGNIFICANT = 0.01
 """Probability below which a change is not an accident of the noise."""
@@ -56,4 +56,4 @@ class Growth(NamedTuple):
 
 def chance_of(change: float, std: float) -> float:
     """Return the probability of so large a normally distributed difference without a change."""
-    return float(2.0 * norm.sf(abs(change) / std)) if std > 0.0 else float(change == 0.0)
+    return float(2.0 * scipy.stats.norm.sf(abs(change) / std)) if std > 0.0 else float(change == 0.0)

@@ -4,7 +4,7 @@ import math
 from collections.abc import Collection, Mapping, Sequence
 from typing import NamedTuple
 
-from scipy.stats import norm
+import scipy
 
 from ..change import Growth
 from ..diagnosis.uncertain import with_std
@@ -75,7 +75,7 @@ def rated(
         f"{_NAMES[part]} {with_std(100 * size, 100 * std, sign='+')} %" for part, (size, std) in growth.items()
     )
     told += f" against the baseline, warn limit {100 * limits.warn_growth:g} %"
-    surely = float(norm.isf(CHANCE))
+    surely = float(scipy.stats.norm.isf(CHANCE))
     grown = {part: size for part, (size, std) in growth.items() if size > surely * std}
     beyond = {part: size for part, size in grown.items() if size >= limits.warn_growth}
     if not beyond:

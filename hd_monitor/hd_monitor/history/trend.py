@@ -4,7 +4,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from scipy.stats import t as t_distribution
+import scipy
 
 from ..arrays import FloatArray, IntArray
 from ..change import SIGNIFICANT, Change
@@ -61,7 +61,7 @@ def change_of(series: Series) -> Change | None:
     after, after_std, _ = weighted_mean(series.values[newest], series.stds[newest] * widened)
     deviation = abs(after - before) / math.hypot(before_std, after_std)
     freedom = max(int(base.sum()) + newest.size - 2, 1) if widened > 1.0 else 1000
-    return Change(before, before_std, after, after_std, float(2.0 * t_distribution.sf(deviation, freedom)))
+    return Change(before, before_std, after, after_std, float(2.0 * scipy.stats.t.sf(deviation, freedom)))
 
 
 def slope_of(series: Series) -> Slope | None:
@@ -69,7 +69,7 @@ def slope_of(series: Series) -> Slope | None:
     if not _has_a_course(series):
         return None
     by_time = _line(series.times / _DAY, series.values, series.stds)
-    p_value = float(2.0 * t_distribution.sf(abs(by_time.slope) / by_time.slope_std, series.values.size - 2))
+    p_value = float(2.0 * scipy.stats.t.sf(abs(by_time.slope) / by_time.slope_std, series.values.size - 2))
     if p_value >= SIGNIFICANT or step_of(series) is not None:
         return None
     turned = (math.nan, math.nan)
@@ -87,7 +87,7 @@ def step_of(series: Series) -> Step | None:
     place = np.arange(2, count - 1)
     before, after = _sides(series, place)
     change, std = after.mean - before.mean, np.hypot(before.std, after.std)
-    chances = place.size * 2.0 * t_distribution.sf(np.abs(change) / std, count - 2)
+    chances = place.size * 2.0 * scipy.stats.t.sf(np.abs(change) / std, count - 2)
     # By the misfit, since the least probabilities are all 0
     best = int(np.argmin(before.left + after.left))
     steady = _line(series.times, series.values, series.stds).left

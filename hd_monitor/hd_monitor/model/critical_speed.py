@@ -3,7 +3,7 @@
 import math
 
 import numpy as np
-from scipy.optimize import minimize_scalar
+import scipy
 
 from .parameters import ParametricModel
 from .stability import growth_rate
@@ -42,7 +42,7 @@ def critical_speed(model: ParametricModel) -> float:
 
 def _lower_edge(model: ParametricModel, lowest: float, highest: float) -> float:
     """Lowest unstable speed between two speeds [rpm]; inf if there is none."""
-    peak = minimize_scalar(
+    peak = scipy.optimize.minimize_scalar(
         lambda speed: -growth_rate(model, speed),
         bounds=(lowest, highest),
         method="bounded",

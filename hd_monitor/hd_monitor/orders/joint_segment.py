@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.special import diric
+import scipy
 
 from ..acquisition.record import JointSamples, Record
 from ..arrays import BoolArray, FloatArray
@@ -93,7 +93,7 @@ class JointSegment:
         columns = line_columns(self.angle, order)
         if self.averaged > 1:
             step = self.speed / (self.rate * self.averaged)  # rad between successive samples of a row
-            columns *= np.tile(diric(np.multiply.outer(step, order), self.averaged), 2)
+            columns *= np.tile(scipy.special.diric(np.multiply.outer(step, order), self.averaged), 2)
         return columns
 
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
-from scipy.stats import f as f_distribution
+import scipy
 
 from ..arrays import ComplexArray, FloatArray, IntArray
 from .line_orders import LineOrders
@@ -140,7 +140,7 @@ class LineFit:
         line, parts = np.arange(self.phasors.size), np.stack([self.phasors.real, self.phasors.imag], axis=1)
         own = self.covariance.reshape(2, line.size, 2, line.size)[:, line, :, line]
         ratios = (parts * np.linalg.solve(own, parts[:, :, None])[:, :, 0]).sum(axis=1) / 2.0
-        return np.asarray(f_distribution.sf(ratios, 2, self.freedom))
+        return np.asarray(scipy.stats.f.sf(ratios, 2, self.freedom))
 
     @property
     def rival(self) -> float | None:
@@ -150,7 +150,7 @@ class LineFit:
         if not self.found[rest].any():
             return None
         ratio = float(self.found[best] / self.left[best] / (self.found[rest].sum() / self.left[rest].sum()))
-        by_chance = rest.size * float(f_distribution.sf(ratio, 2, 2 * (rest.size - 1)))
+        by_chance = rest.size * float(scipy.stats.f.sf(ratio, 2, 2 * (rest.size - 1)))
         larger = 2.0 * math.sqrt(self.found[best]) / float(self.left[best]) > float(self.amplitudes.max())
         return float(self.reference_orders[best]) if by_chance < CHANCE and larger else None
 

@@ -3,7 +3,7 @@
 import math
 
 import numpy as np
-from scipy.interpolate import BSpline
+import scipy
 
 from ..arrays import FloatArray
 from ..robust import clip
@@ -46,7 +46,7 @@ def trend_columns(segment: JointSegment, order: float) -> FloatArray:
     pieces = max(1, round(span * order / (2.0 * np.pi)))
     knots = np.concatenate([np.zeros(3), np.linspace(0.0, 1.0, pieces + 1), np.ones(3)])
     place = np.clip((angle - angle.min()) / span, 0.0, 1.0) if span > 0.0 else np.zeros(angle.size)
-    return np.asarray(BSpline.design_matrix(place, knots, 3).toarray(), dtype=np.float64)
+    return np.asarray(scipy.interpolate.BSpline.design_matrix(place, knots, 3).toarray(), dtype=np.float64)
 
 
 def products_of_columns(columns: FloatArray, trend: FloatArray, orders: LineOrders) -> Products | None:

@@ -1,8 +1,7 @@
 """Foreign tones in a vibration signal: mains hum or a neighbouring machine, at frequencies where there is no line."""
 
 import numpy as np
-from scipy import fft
-from scipy.signal import get_window
+import scipy
 
 from ..arrays import FloatArray
 
@@ -38,7 +37,7 @@ def foreign_tones(values: FloatArray, period: float, own: FloatArray, width: flo
     """
     if values.size < LONG_ENOUGH:
         return np.empty(0)
-    spectrum = np.abs(fft.rfft((values - values.mean()) * get_window("hann", values.size))) ** 2
+    spectrum = np.abs(scipy.fft.rfft((values - values.mean()) * scipy.signal.get_window("hann", values.size))) ** 2
     bin_width = 1.0 / (values.size * period)
     frequencies = bin_width * np.arange(spectrum.size)
     margin = width + 4.0 * bin_width

@@ -3,8 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.linalg import solve_toeplitz
-from scipy.signal import lfilter
+import scipy
 
 from ..arrays import BoolArray, FloatArray
 from ..robust import clip
@@ -42,12 +41,12 @@ def learn_whitening(residuals: Sequence[FloatArray], taps: int = TAPS) -> FloatA
     if covariance[0] <= 0.0:
         return np.concatenate([[1.0], np.zeros(taps)])
     covariance[0] *= 1.0 + 1e-6
-    return np.concatenate([[1.0], -np.asarray(solve_toeplitz(covariance[:-1], covariance[1:]))])
+    return np.concatenate([[1.0], -np.asarray(scipy.linalg.solve_toeplitz(covariance[:-1], covariance[1:]))])
 
 
 def whiten(coefficients: FloatArray, columns: FloatArray) -> FloatArray:
     """Filter every column, shape (rows, columns); rows that look back over a start are to be left out."""
-    return np.asarray(lfilter(coefficients, [1.0], columns, axis=0), dtype=np.float64)
+    return np.asarray(scipy.signal.lfilter(coefficients, [1.0], columns, axis=0), dtype=np.float64)
 
 
 def settled(starts: BoolArray, coefficients: FloatArray) -> BoolArray:

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.signal import ZoomFFT, get_window
+import scipy
 
 from ..arrays import FloatArray
 from ..contract import ZOOM_BINS
@@ -90,8 +90,8 @@ class Zoom:
             )
         self.count = count
         self.frequencies: FloatArray = np.linspace(first, last, bins)
-        self._window: FloatArray = np.asarray(get_window("hann", count), dtype=np.float64)
-        self._transform = ZoomFFT(count, [first, last], m=bins, fs=1.0 / period, endpoint=True)
+        self._window: FloatArray = np.asarray(scipy.signal.get_window("hann", count), dtype=np.float64)
+        self._transform = scipy.signal.ZoomFFT(count, [first, last], m=bins, fs=1.0 / period, endpoint=True)
 
     def __call__(self, samples: npt.ArrayLike) -> FloatArray:
         """Peak amplitudes, shape (bins,), of the samples, shape (count,); their mean is removed.
