@@ -24,8 +24,9 @@ from .status_log import StatusLog
 from .subscriptions import DrainedSubscription, subscribed
 
 NAME = "hd_monitor_node"
-DRAIN_PERIOD = 0.05
-"""Seconds between two looks into the queues: the largest delay of a verdict."""
+DRAIN_PERIOD = 0.2
+"""Seconds between two looks into the queues: the largest delay of a verdict. Each costs an executor half a millisecond,
+and more with the services of many joints, whether anything has come or not."""
 STATUS_PERIOD = 1.0
 """Seconds between two statuses (REP-107)."""
 TRIM_PERIOD = 10.0
