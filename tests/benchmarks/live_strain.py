@@ -27,7 +27,7 @@ from typing import Any
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
-from tests.benchmarks.node_resources import use_of
+from tests.benchmarks.live_cost import use_of
 
 from hd_sim_node.demo.plan import free_domain
 

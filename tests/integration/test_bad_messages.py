@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.benchmarks.node_resources import use_of
+from tests.benchmarks.live_cost import use_of
 
 from .conftest import ERROR, Bench, Feeder, Shown
 
