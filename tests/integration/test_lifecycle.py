@@ -166,23 +166,6 @@ def test_a_transition_that_makes_no_sense_is_refused(bench: Bench, peer: Any) ->
         assert state(peer, NODE) == "active"
 
 
-def test_a_killed_node_shows_its_verdict_again(bench: Bench, tmp_path: Path) -> None:
-    from .conftest import ERROR, QUICK
-    from .test_verdicts import settled
-
-    given = (f"history.path:={tmp_path / 'ledger.sqlite'}", "reducer.serial:=A7")
-    first = bench.monitor(*given)
-    rig = bench.rig("defect:=flexspline", *QUICK)
-    bench.until_status(lambda s: settled(s) and s.level == ERROR, "a settled verdict")
-    bench.kill(first)
-    bench.stop(rig)
-    bench.forget()
-    bench.monitor(*given)
-    again = bench.until_status(lambda s: True, "a status of the node started anew")
-    assert (again.component, again.level, again.hardware_id) == ("flexspline", ERROR, "A7")
-    assert again.number("evidence age (s)") >= 0
-
-
 def test_two_monitors_side_by_side_share_a_ledger(bench: Bench, tmp_path: Path) -> None:
     from .conftest import QUICK
     from .test_verdicts import settled
