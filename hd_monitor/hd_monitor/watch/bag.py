@@ -19,7 +19,7 @@ from .curves import NAMES, Curve, curve_from, curve_of, topic_of
 from .state import Key, View
 
 _AT_ONCE = 0.1
-"""Seconds of work between two looks at the keyboard."""
+"""Seconds of work between two looks at the keyboard; a window of messages is judged without one."""
 _NEEDED = "sensor_msgs/msg/JointState"
 """Type of topic without which nothing can be replayed."""
 
