@@ -133,8 +133,9 @@ class Live:
         loud = "Traceback" in self._log.read_text(encoding="utf-8", errors="replace")
         third = max(1, len(self._memory) // 3)
         early, late = (sum(part) / len(part) for part in (self._memory[:third], self._memory[-third:]))
+        memory = f"{early:.0f} {'+' if late >= early else '-'} {abs(late - early):.1f} MB"
         return (
-            f"{self.slowest:.2f} s | {self.silence:.2f} s | {early:.0f} + {late - early:.1f} MB | "
+            f"{self.slowest:.2f} s | {self.silence:.2f} s | {memory} | "
             f"{shown} | {self._samples / 1e6:.1f} million | {status}{', with a traceback' if loud else ''}"
         )
 
