@@ -111,6 +111,13 @@ def test_whole_core_loads_numpy_and_scipy_only() -> None:
     assert packages <= ALLOWED
 
 
+def test_no_core_module_loads_a_package_of_scipy_before_its_first_use() -> None:
+    # They take a second and 60 MB, which a node whose inputs have not begun need not have spent.
+    script = TOGETHER + "\nprint(json.dumps([n for n in sys.modules if n.startswith('scipy.') and '._' not in n]))"
+    _, packages = loaded_in(script, *core_modules())
+    assert packages <= {"scipy.version"}
+
+
 @pytest.mark.parametrize("script", [TOGETHER, ONE_BY_ONE], ids=["together", "one by one"])
 def test_the_probe_sees_a_foreign_package(script: str) -> None:
     (packages,) = loaded_in(script, "pytest")

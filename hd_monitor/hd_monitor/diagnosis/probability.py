@@ -4,8 +4,7 @@ import functools
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq
-from scipy.special import ndtri
+import scipy
 
 from ..arrays import FloatArray
 from ..identification.result import Identification
@@ -148,6 +147,8 @@ def _draws(readings: _Distribution) -> FloatArray:
 @functools.cache
 def _standard_normal(dimensions: int) -> FloatArray:
     """Independent standard normal coordinates of an additive-recurrence point set, shape (dimensions, draws)."""
-    ratio = float(brentq(lambda x: x ** (dimensions + 1) - x - 1.0, 1.0, 2.0, xtol=1e-15))  # the plastic number for 2
+    ratio = float(
+        scipy.optimize.brentq(lambda x: x ** (dimensions + 1) - x - 1.0, 1.0, 2.0, xtol=1e-15)
+    )  # the plastic number for 2
     n = np.arange(_DRAWS) + 0.5
-    return np.stack([ndtri(np.mod(n / ratio**power, 1.0)) for power in range(1, dimensions + 1)])
+    return np.stack([scipy.special.ndtri(np.mod(n / ratio**power, 1.0)) for power in range(1, dimensions + 1)])

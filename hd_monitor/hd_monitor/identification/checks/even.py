@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import fft
+import scipy
 
 from ...acquisition.record import Record
 from ...arrays import ComplexArray, FloatArray
@@ -95,7 +95,7 @@ class EvenSignal:
         torque : bool
             Whether each line comes once more in proportion to the torque.
         """
-        frequency = fft.fftfreq(length, self.period)
+        frequency = scipy.fft.fftfreq(length, self.period)
         response = (frequency / dynamics.natural_frequency) ** 2 * dynamics.receptance(frequency)
         for k in range(1, harmonics + 1):
             found = []
@@ -103,6 +103,7 @@ class EvenSignal:
                 seen = np.abs(k * order * self.speed) * self.period < _BAND * math.pi
                 line = seen * np.exp(1j * k * order * self.angle)
                 found += [
-                    response * fft.fft(each, length) for each in ((line, self.torque * line) if torque else (line,))
+                    response * scipy.fft.fft(each, length)
+                    for each in ((line, self.torque * line) if torque else (line,))
                 ]
             yield found

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from scipy import fft
+import scipy
 
 from ...acquisition.record import Record
 from ...arrays import FloatArray
@@ -36,8 +36,8 @@ def line_shares(records: Sequence[Record], reducer: Reducer, dynamics: Dynamics,
     size = len(signal)
     width = min(round(WINDOW / signal.period), size)
     explained, by_chance = np.zeros(2), np.zeros(2)
-    for spectra in signal.lines(reducer, dynamics, harmonics, length=fft.next_fast_len(2 * size), torque=True):
-        lines = np.array([fft.ifft(spectrum)[:size] for spectrum in spectra])
+    for spectra in signal.lines(reducer, dynamics, harmonics, length=scipy.fft.next_fast_len(2 * size), torque=True):
+        lines = np.array([scipy.fft.ifft(spectrum)[:size] for spectrum in spectra])
         windows = (slice(first, first + width) for first in range(size % width, size, width))
         explained += [
             sum(_explained(lines[::2, window], signal.vibration[window]) for window in windows),

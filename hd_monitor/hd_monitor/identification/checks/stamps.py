@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
-from scipy import fft
+import scipy
 
 from ...acquisition.record import Record
 from ...arrays import ComplexArray, FloatArray
@@ -78,12 +78,12 @@ def _explained(signal: EvenSignal, reducer: Reducer, dynamics: Dynamics, harmoni
     width, reach = round(WINDOW / signal.period), round(reach / signal.period)
     count = len(signal) // width
     size, skipped = count * width, len(signal) % width
-    length = fft.next_fast_len(len(signal) + 2 * reach)
+    length = scipy.fft.next_fast_len(len(signal) + 2 * reach)
     windows = np.zeros((count, length))
     for number in range(count):
         part = slice(skipped + number * width, skipped + (number + 1) * width)
         windows[number, part] = signal.vibration[part]
-    spectra = fft.fft(windows)
+    spectra = scipy.fft.fft(windows)
     first = skipped + np.arange(0, size, width)[:, None] + np.arange(2 * reach, -1, -1)
 
     def within(values: ComplexArray) -> ComplexArray:
@@ -92,8 +92,10 @@ def _explained(signal: EvenSignal, reducer: Reducer, dynamics: Dynamics, harmoni
 
     total = np.zeros((count, 2 * reach + 1))
     for pair in signal.lines(reducer, dynamics, harmonics, length=length):
-        own, other = (np.roll(fft.ifft(spectra * line.conj()), reach, axis=1)[:, : 2 * reach + 1] for line in pair)
-        one, two = (fft.ifft(line)[: len(signal) + reach] for line in pair)
+        own, other = (
+            np.roll(scipy.fft.ifft(spectra * line.conj()), reach, axis=1)[:, : 2 * reach + 1] for line in pair
+        )
+        one, two = (scipy.fft.ifft(line)[: len(signal) + reach] for line in pair)
         power, further = within(np.abs(one) ** 2).real, within(np.abs(two) ** 2).real
         floor = _RIDGE * (float(power.mean()) + float(further.mean()))
         power, further, shared = power + floor, further + floor, within(one.conj() * two)

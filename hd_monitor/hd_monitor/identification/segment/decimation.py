@@ -4,8 +4,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import ndimage, signal
-from scipy.interpolate import CubicSpline
+import scipy
 
 from ...arrays import BoolArray, FloatArray
 
@@ -65,10 +64,12 @@ def decimate(raw: FloatArray, period: float, line: float, natural: float) -> Dec
     if factor < 2 or lost > (_LOSS_DEAR if factor >= _WORTH_MUCH else _LOSS) or np.count_nonzero(used) < 8:
         values = np.where(used, raw, 0.0)
         return Decimated(values=values, used=used, factor=1, first=0, highest_frequency=0.5 / period)
-    taps = signal.firwin(2 * half + 1, 0.43 * 2.0 / factor, window=("kaiser", 6.0))
+    taps = scipy.signal.firwin(2 * half + 1, 0.43 * 2.0 / factor, window=("kaiser", 6.0))
     values = np.convolve(_bridge(raw, used), taps, mode="valid")[::factor]
-    holes = ndimage.binary_opening(~used, np.ones(_BRIDGED + 1, dtype=np.bool_))
-    near = ~ndimage.binary_dilation(holes, np.ones(2 * factor + 1, dtype=np.bool_))[half : raw.size - half : factor]
+    holes = scipy.ndimage.binary_opening(~used, np.ones(_BRIDGED + 1, dtype=np.bool_))
+    near = ~scipy.ndimage.binary_dilation(holes, np.ones(2 * factor + 1, dtype=np.bool_))[
+        half : raw.size - half : factor
+    ]
     return Decimated(
         values=np.where(near, values, 0.0),
         used=near,
@@ -84,5 +85,7 @@ def _bridge(raw: FloatArray, used: BoolArray) -> FloatArray:
         return raw
     places = np.flatnonzero(used)
     filled = raw.copy()
-    filled[~used] = CubicSpline(places, raw[used])(np.clip(np.flatnonzero(~used), places[0], places[-1]))
+    filled[~used] = scipy.interpolate.CubicSpline(places, raw[used])(
+        np.clip(np.flatnonzero(~used), places[0], places[-1])
+    )
     return filled

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import fft
+import scipy
 
 from ...arrays import ComplexArray, FloatArray
 
@@ -54,7 +54,7 @@ class LowPass:
         pad = min(size - 1, math.ceil(_REFLECTED / (self.limit * step)))
         first, last = series[:1], series[-1:]
         whole = np.concatenate([2.0 * first - series[pad:0:-1], series, 2.0 * last - series[-2 : -pad - 2 : -1]])
-        length = fft.next_fast_len(whole.shape[0], real=True)
-        spectrum = fft.rfft(whole, length, axis=0)
-        spectrum *= self.response(np.asarray(fft.rfftfreq(length, step)))[:, None]
-        return np.asarray(fft.irfft(spectrum, length, axis=0)[pad : pad + size])
+        length = scipy.fft.next_fast_len(whole.shape[0], real=True)
+        spectrum = scipy.fft.rfft(whole, length, axis=0)
+        spectrum *= self.response(np.asarray(scipy.fft.rfftfreq(length, step)))[:, None]
+        return np.asarray(scipy.fft.irfft(spectrum, length, axis=0)[pad : pad + size])

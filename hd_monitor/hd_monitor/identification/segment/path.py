@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline
+import scipy
 
 from ...arrays import ComplexArray, FloatArray
 from ...model.oscillator import gauss_times
@@ -101,7 +101,7 @@ def paths_along(
 def _path(motion: Motion, places: FloatArray, reducer: Reducer, harmonics: int, load_orders: tuple[int, ...]) -> Path:
     """Return the path at some places along the samples, counted in samples."""
     samples = np.arange(motion.angle.size)
-    angle = CubicHermiteSpline(samples, motion.angle, motion.speed * motion.step)(places)
+    angle = scipy.interpolate.CubicHermiteSpline(samples, motion.angle, motion.speed * motion.step)(places)
     lowest = reducer.output_orders[0]
     first = np.exp(1j * lowest * angle)
     second = first * powers(np.exp(1j * angle), WAVE_GENERATOR_LOBES)[-1]  # the lobes: what the orders differ by

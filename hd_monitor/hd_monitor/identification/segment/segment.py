@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from scipy import fft
+import scipy
 
 from ...acquisition.record import Record, join_records
 from ...arrays import BoolArray, FloatArray
@@ -119,7 +119,7 @@ class Segment:
     def frequencies(self) -> FloatArray:
         """Frequencies [Hz] of the rows of :meth:`transform`, shape (bins,)."""
         length, bins = self._bins()
-        return np.asarray(fft.rfftfreq(length, self.period)[bins])
+        return np.asarray(scipy.fft.rfftfreq(length, self.period)[bins])
 
     @property
     def fill(self) -> float:
@@ -134,12 +134,12 @@ class Segment:
         x = signals * self.used[:, None]
         x -= self.slow @ (self.slow.T @ x)
         length, bins = self._bins()
-        spectrum = fft.rfft(x, length, axis=0)[bins] * math.sqrt(2.0 / length)
+        spectrum = scipy.fft.rfft(x, length, axis=0)[bins] * math.sqrt(2.0 / length)
         return np.concatenate([spectrum.real, spectrum.imag])
 
     def _bins(self) -> tuple[int, slice]:
         """Length of the Fourier transform, and which of its bins count."""
-        length = fft.next_fast_len(len(self), real=True)
+        length = scipy.fft.next_fast_len(len(self), real=True)
         slow = _slow_degree(self.duration) / (2.0 * self.duration)
         width = 1.0 / (length * self.period)
         return length, slice(math.ceil(slow / width), math.floor(self.highest_frequency / width * (1.0 + 1e-9)) + 1)

@@ -7,8 +7,7 @@ more than a defect does. What a joint transmits follows its angle and its motion
 import math
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d
-from scipy.signal import periodogram
+import scipy
 
 from ...arrays import FloatArray
 from ...orders.regression import line_columns
@@ -32,7 +31,7 @@ def own_acceleration(speed: FloatArray, period: float) -> FloatArray:
     """Acceleration [rad/s²] of the output, from its speed [rad/s] at samples `period` [s] apart."""
     if float(np.ptp(speed)) == 0.0:
         return np.zeros(speed.shape)
-    return np.asarray(gaussian_filter1d(np.gradient(speed, period), _QUICK / period, mode="nearest"))
+    return np.asarray(scipy.ndimage.gaussian_filter1d(np.gradient(speed, period), _QUICK / period, mode="nearest"))
 
 
 def regress_torque(
@@ -63,7 +62,7 @@ def regress_torque(
             break
         del terms[least]
         explained = without[least]
-    slow = gaussian_filter1d(torque - explained, SLOW / period, mode="nearest")
+    slow = scipy.ndimage.gaussian_filter1d(torque - explained, SLOW / period, mode="nearest")
     by_noise = variance * period / (2.0 * math.sqrt(math.pi) * SLOW)
     share = max(0.0, 1.0 - _SLOW_SIGNIFICANT * by_noise / max(float(np.mean(slow**2)), 1e-300))
     return np.asarray(explained + share * slow)
@@ -79,6 +78,6 @@ def _projection(torque: FloatArray, terms: list[FloatArray]) -> FloatArray:
 
 def _noise_density(rest: FloatArray, period: float) -> float:
     """One-sided density [(N·m)²/Hz] of the noise in what a regression leaves of a torque."""
-    frequencies, density = periodogram(rest, 1.0 / period, window="hann", detrend=False)
+    frequencies, density = scipy.signal.periodogram(rest, 1.0 / period, window="hann", detrend=False)
     band = (frequencies >= _NOISE_BAND[0]) & (frequencies <= _NOISE_BAND[1])
     return float(np.median(density[band])) / _MEDIAN if band.any() else 0.0

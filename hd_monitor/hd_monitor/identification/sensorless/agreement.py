@@ -6,8 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.stats import chi2, norm
-from scipy.stats import t as t_distribution
+import scipy
 
 from ...limitation import Limitation, LimitationCode, blocker
 from ...orders.pooling import GroupFit
@@ -128,21 +127,21 @@ def dominance(fit: LineFit, ratio: float) -> LinePair:
     for weights in ((ratio, -1.0), (-1.0, ratio)):
         w = np.array(weights)
         deviation = math.sqrt(max(float(w @ covariance @ w), 1e-300))
-        confidence.append(float(t_distribution.cdf(float(w @ fit.amplitudes) / deviation, fit.freedom)))
+        confidence.append(float(scipy.stats.t.cdf(float(w @ fit.amplitudes) / deviation, fit.freedom)))
     return LinePair(*confidence)
 
 
 def pooled_dominance(evidence: Sequence[DirectionEvidence]) -> LinePair:
     """Confidence of all together that each spline dominates (Stouffer's sum of normal deviates)."""
     each = np.array([direction.dominance for direction in evidence])
-    deviates = norm.ppf(np.clip(each, 1e-12, 1.0 - 1e-12))
-    return LinePair(*norm.cdf(deviates.sum(axis=0) / np.sqrt(len(evidence))).tolist())
+    deviates = scipy.stats.norm.ppf(np.clip(each, 1e-12, 1.0 - 1e-12))
+    return LinePair(*scipy.stats.norm.cdf(deviates.sum(axis=0) / np.sqrt(len(evidence))).tolist())
 
 
 def pooled_chance(evidence: Sequence[DirectionEvidence]) -> LinePair:
     """Probability of noise alone making lines as large as in all together (Fisher's method)."""
     each = np.clip([direction.chance for direction in evidence], 1e-300, 1.0)
-    return LinePair(*chi2.sf(-2.0 * np.log(each).sum(axis=0), 2 * len(evidence)).tolist())
+    return LinePair(*scipy.stats.chi2.sf(-2.0 * np.log(each).sum(axis=0), 2 * len(evidence)).tolist())
 
 
 def pooled(evidence: Sequence[DirectionEvidence]) -> DirectionEvidence:

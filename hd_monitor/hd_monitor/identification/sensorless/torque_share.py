@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.stats import chi2
+import scipy
 
 from ...arrays import BoolArray, FloatArray, IntArray
 from ...orders.joint_segment import JointSegment
@@ -155,7 +155,7 @@ def _misfits(parts: FloatArray, covariance: FloatArray) -> FloatArray:
 
 def _share(spline: str, misfits: FloatArray, groups: int) -> TorqueShare:
     best = int(np.argmin(misfits))
-    limit = misfits[best] + float(chi2.ppf(CONFIDENCE, 2 * groups)) * max(1.0, misfits[best] / (groups - 1))
+    limit = misfits[best] + float(scipy.stats.chi2.ppf(CONFIDENCE, 2 * groups)) * max(1.0, misfits[best] / (groups - 1))
     shares = np.sin(_MIXTURES) ** 2
     inside = shares[misfits <= limit]
     return TorqueShare(spline=spline, share=float(shares[best]), low=float(inside.min()), high=float(inside.max()))

@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from scipy import fft
+import scipy
 
 from ...arrays import FloatArray
 from ...model.parameters import Dynamics
@@ -55,7 +55,7 @@ def _levelled(segment: Segment, signals: FloatArray) -> FloatArray:
 def _equalised(signals: FloatArray, period: float, dynamics: Dynamics) -> FloatArray:
     """Signals with the resonator's phase turned back, the magnitudes of their spectra as they were."""
     size = signals.shape[1]
-    length = fft.next_fast_len(2 * size, real=True)
+    length = scipy.fft.next_fast_len(2 * size, real=True)
     ratio = np.fft.rfftfreq(length, period) / dynamics.natural_frequency
     response = -(ratio**2) / (1.0 - ratio**2 + 2j * dynamics.damping_ratio * ratio)
     response[0] = 1.0

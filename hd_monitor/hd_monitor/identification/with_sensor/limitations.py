@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator
 
 import numpy as np
-from scipy.special import chdtri
+import scipy
 
 from ...arrays import FloatArray
 from ...limitation import Limitation, LimitationCode, blocker, doubt
@@ -86,7 +86,7 @@ def _too_weak(context: Context, state: State, fit: Fit) -> Limitation | None:
 
     So near the noise the likelihood is not the Gaussian that decisions are read from.
     """
-    chance = float(chdtri(context.unknowns.size, _CHANCE))
+    chance = float(scipy.special.chdtri(context.unknowns.size, _CHANCE))
     if state.heard < _STARTS * chance:
         return blocker(LimitationCode.LINES_ABSENT)
     if state.heard < _GAUSSIAN * chance:
