@@ -206,10 +206,11 @@ class Problem:
         kinds = [u.mask(u.load, u.frequency, u.damping, u.delay, u.drift)]
         if u.transmission_error:
             kinds += [kinds[0] | u.mask(u.displacement), kinds[0] | u.mask(u.stiffness)]
-        fits = [self.at(start) for start in starts]
+        # A start's linearisation takes megabytes: only one at a time is held
+        promises = [[self._promise(fit, self.active & ~held) for held in kinds] for fit in map(self.at, starts)]
         final = []
-        for held in kinds:
-            _, floor, values = min((self._promise(fit, self.active & ~held) for fit in fits), key=lambda p: p[0])
+        for of_kind in zip(*promises, strict=True):
+            _, floor, values = min(of_kind, key=lambda promise: promise[0])
             final.append(replace(self, floor=floor)._priced(values, rounds))
         final.sort(key=lambda t: t[0])
         return [(problem, fit) for price, problem, fit in final if price < final[0][0] + 2.0 * BETTER]
