@@ -169,9 +169,10 @@ class SensorlessIdentifier:
         first = [piece for piece in evidence if piece.k == 1]
         self._directions = by_direction(first)
         if not first:
-            still = all(np.ptp(segment.values) == 0.0 for segment in self._pool.segments)
-            constant = (blocker(LimitationCode.SIGNAL_CONSTANT),)
-            return Identification.none(constant, relative=True) if still else self._latest
+            segments = self._pool.segments
+            if segments and all(np.ptp(segment.values) == 0.0 for segment in segments):
+                return Identification.none((blocker(LimitationCode.SIGNAL_CONSTANT),), relative=True)
+            return self._latest
         mean, covariance = _mean_amplitudes(self._directions)
         total = float(np.hypot(*mean))
         # Shares cos(angle) and sin(angle): their errors are those of the angle alone.

@@ -240,6 +240,13 @@ def test_a_constant_signal_is_named():
     assert "does not change at all" in describe_limitation(identify(dead, settings_of()).estimate().blockers[0])
 
 
+def test_no_signal_yet_is_not_a_constant_one():
+    parameters = settings_of()
+    identifier = identify(part(swinging(), slice(0, 20)), parameters)
+    identifier.change(parameters)  # which asks for the result anew
+    assert identifier.estimate() is None
+
+
 def test_too_fast_for_the_rate_is_named():
     times = np.arange(0.0, 30.0, 0.01)
     samples = JointSamples(times=times, angle=3.0 * times, speed=np.full(times.size, 3.0), effort=np.sin(times))
