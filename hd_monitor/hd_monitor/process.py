@@ -82,6 +82,9 @@ def guard(name: str, load: Callable[[], Callable[[], int]]) -> int:
         return READER_GONE
     except ModuleNotFoundError as error:
         return _end(f"{name}: {_missing(error)}", UNUSABLE_INPUT)
+    except ImportError as error:  # as of a pyarrow that needs a newer numpy
+        what = " ".join(str(error).split())
+        return _end(f"{name}: {what}; install versions of the Python packages that fit each other", UNUSABLE_INPUT)
     except HdMonitorError as error:
         return _end(f"{name}: {error}", error.status)
     except OSError as error:

@@ -5,6 +5,7 @@ import platform
 import signal
 import subprocess
 import sys
+from collections.abc import Callable
 
 import pytest
 
@@ -121,3 +122,12 @@ def test_an_interrupt_of_the_work_undoes_it_and_says_nothing(capsys: pytest.Capt
     assert guard("name", lambda: work) == 130
     assert undone == [True]
     assert capsys.readouterr() == ("", "")
+
+
+def test_packages_that_do_not_fit_each_other_are_one_line(capsys: pytest.CaptureFixture[str]) -> None:
+    def load() -> Callable[[], int]:
+        raise ImportError("pyarrow requires NumPy 2.0 or newer,\nfound 1.26.4")
+
+    assert guard("name", load) == 2
+    said = "name: pyarrow requires NumPy 2.0 or newer, found 1.26.4; install versions of the Python packages that fit"
+    assert capsys.readouterr() == ("", f"{said} each other\n")
