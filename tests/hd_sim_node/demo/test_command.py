@@ -56,7 +56,7 @@ def test_it_names_the_defect_and_says_where_that_came_from(start_module: Start, 
     rows = final_rows(demo.output)
     assert (rows["component"], rows["fault_code"]) == (defect, code)
     for spline in ("flexspline", "circular spline"):
-        assert re.match(r"\d+\.\d\d ± <?\d\.\d\d % +\(simulated \d+\.\d\d %\)", rows[spline]), rows
+        assert re.match(r"\d+\.\d+ ± 0\.0*[1-9]\d % +\(simulated \d+\.\d\d %\)", rows[spline]), rows
     assert rows["limits"] == "warn 5.000 %, error 8.000 %"
     assert rows["topic"] == "/diagnostics (diagnostic_msgs/DiagnosticArray)"
     assert rows["node"] == "/hd_monitor_node"
