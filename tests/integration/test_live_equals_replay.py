@@ -40,8 +40,8 @@ RIG_PARAMETERS = (
     "joint_states.loss:=0.01",
     "joint_states.jitter:=0.0001",
 )
-PACES = {"block": 5.0, "samples": 3.0}
-"""Simulated seconds in a second; one message a sample is three thousand a second."""
+PACES = {"block": 5.0, "samples": 1.5}
+"""Simulated seconds in a second; one message a sample, to three processes, keeps two processors busy."""
 
 
 class Recorder:
