@@ -5,6 +5,7 @@ write-ahead log, so that a reader never waits for the writer and a process kille
 """
 
 import json
+import os
 import sqlite3
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -95,6 +96,7 @@ class Ledger:
     path : Path
         Made if missing, unless `read_only`.
     read_only : bool
+        Whether it is only read, also from a disk that cannot be written.
 
     Raises
     ------
@@ -106,13 +108,22 @@ class Ledger:
         self.path = path
         if read_only and not path.is_file():
             raise LedgerError(f"{path} does not exist; give the file of history.path or of replay --history")
+        if not read_only:
+            try:
+                path.open("ab").close()  # SQLite does not say why it cannot open a file
+            except OSError as error:
+                raise LedgerError(f"{path} cannot be opened: {error.strerror}; choose another place") from None
+        # Where nothing can be written, SQLite reads a file with a write-ahead log only if told that nobody writes to it
+        frozen = read_only and not os.access(path.parent, os.W_OK)
+        place = f"{path.absolute().as_uri()}{'?immutable=1' if frozen else ''}"
         with self._explained("opened"):
-            self._file = sqlite3.connect(path, timeout=PATIENCE, isolation_level=None)
+            self._file = sqlite3.connect(place, uri=True, timeout=PATIENCE, isolation_level=None)
         try:
             with self._explained("opened"):
-                self._file.execute(f"PRAGMA page_size = {_PAGE}")
-                self._file.execute("PRAGMA journal_mode = WAL")
-                self._file.execute("PRAGMA synchronous = FULL")
+                if not frozen:
+                    self._file.execute(f"PRAGMA page_size = {_PAGE}")
+                    self._file.execute("PRAGMA journal_mode = WAL")
+                    self._file.execute("PRAGMA synchronous = FULL")
                 self._set_up()
         except LedgerError:
             self._file.close()
@@ -202,6 +213,8 @@ class Ledger:
     # -----------------------------------------------------------------------------------------------------------------
 
     def _set_up(self) -> None:
+        if self._file.execute("PRAGMA user_version").fetchone() == (VERSION,):
+            return
         with self._transaction():
             (version,) = self._file.execute("PRAGMA user_version").fetchone()
             if version > VERSION:

@@ -187,6 +187,22 @@ def test_a_missing_ledger_is_named_where_it_is_only_read(path):
     assert not path.exists()
 
 
+def test_a_ledger_on_a_disk_that_cannot_be_written_is_read(path, monkeypatch):
+    with Ledger(path) as ledger:
+        ledger.append(entry())
+    monkeypatch.setattr(os, "access", lambda place, mode: False)
+    with Ledger(path, read_only=True) as ledger:
+        assert ledger.entries("S1") == [entry()]
+        assert [file.name for file in path.parent.iterdir()] == [path.name]  # no log beside it
+        with pytest.raises(LedgerError, match="readonly"):
+            ledger.append(entry())
+
+
+def test_a_place_where_no_ledger_can_be_says_why(tmp_path):
+    with pytest.raises(LedgerError, match="cannot be opened: No such file or directory; choose another place"):
+        Ledger(tmp_path / "missing" / "ledger.sqlite")
+
+
 def test_a_spoilt_entry_is_named(path):
     with Ledger(path) as ledger:
         ledger.append(entry())
