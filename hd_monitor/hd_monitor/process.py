@@ -83,6 +83,8 @@ def guard(name: str, load: Callable[[], Callable[[], int]]) -> int:
     except ModuleNotFoundError as error:
         return _end(f"{name}: {_missing(error)}", UNUSABLE_INPUT)
     except ImportError as error:  # as of a pyarrow that needs a newer numpy
+        if (error.name or "").startswith("hd_"):
+            return _internal_error(name, error)
         what = " ".join(str(error).split())
         return _end(f"{name}: {what}; install versions of the Python packages that fit each other", UNUSABLE_INPUT)
     except HdMonitorError as error:
@@ -91,10 +93,7 @@ def guard(name: str, load: Callable[[], Callable[[], int]]) -> int:
         place = error.filename or "standard output"
         return _end(f"{name}: {place} cannot be written: {error.strerror or error}", FAILED)
     except Exception as error:
-        with suppress(OSError):
-            traceback.print_exc()
-        what = " ".join(f"{type(error).__name__}: {error}".split())
-        return _end(f"{name}: internal error ({what}); please report it with the lines above", FAILED)
+        return _internal_error(name, error)
     finally:
         _silence_broken_streams()
 
@@ -122,6 +121,13 @@ def _end(line: str, status: int) -> int:
     with suppress(OSError):
         print(line, file=sys.stderr)  # on standard output, if standard error is closed
     return status
+
+
+def _internal_error(name: str, error: Exception) -> int:
+    with suppress(OSError):
+        traceback.print_exc()
+    what = " ".join(f"{type(error).__name__}: {error}".split())
+    return _end(f"{name}: internal error ({what}); please report it with the lines above", FAILED)
 
 
 def _silence_broken_streams() -> None:

@@ -131,3 +131,13 @@ def test_packages_that_do_not_fit_each_other_are_one_line(capsys: pytest.Capture
     assert guard("name", load) == 2
     said = "name: pyarrow requires NumPy 2.0 or newer, found 1.26.4; install versions of the Python packages that fit"
     assert capsys.readouterr() == ("", f"{said} each other\n")
+
+
+def test_a_name_that_our_own_modules_lack_is_our_error(capsys: pytest.CaptureFixture[str]) -> None:
+    def load() -> Callable[[], int]:
+        from hd_monitor.errors import NoSuchError  # type: ignore[attr-defined]
+
+        raise NoSuchError
+
+    assert guard("name", load) == 3
+    assert "name: internal error (ImportError: cannot import name 'NoSuchError'" in capsys.readouterr().err
